@@ -17,6 +17,7 @@
 #include "Engine/Import/Export.h"
 #include "Engine/Signal/Delay.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/ChannelNamed.h"
 
 #include <nlohmann/json.hpp>
 
@@ -47,20 +48,6 @@ struct Found {
 constexpr double nothing = -400.0;  ///< dB of a power of zero
 
 double decibels(double powerRatio) { return powerRatio > 1e-40 ? 10.0 * std::log10(powerRatio) : nothing; }
-
-Quantity outputOf(const Measurement& take, const std::string& wanted)
-{
-    if (!wanted.empty()) {
-        const auto quantity = quantityNamed(wanted);
-        if (!quantity || !take.find(*quantity))
-            throw Error(Error::Kind::usage, "The take has no channel \"" + wanted + "\".");
-        return *quantity;
-    }
-    for (const auto& channel : take.channels)
-        if (channel.quantity != take.input().quantity)
-            return channel.quantity;
-    throw Error(Error::Kind::data, "The take has no channel beside its input.");
-}
 
 std::vector<double> relativeTo(const std::vector<double>& variance, const Frf& frf)
 {
@@ -291,13 +278,11 @@ void run(const BlaArguments& options, Terminal& terminal)
     if (prepared.asResponses())
         return showResponse(options, terminal);
     const auto& take = prepared.measurement();
-    const auto output = outputOf(take, options.output);
+    const auto output = outputNamed(take, options.output, take.input().quantity).quantity;
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
-    const bool periodic = take.excitation && !take.excitation->lines.empty();
-    const int level = !periodic            ? -1
-                      : options.level >= 0 ? options.level
-                                           : static_cast<int>(take.excitation->levels.size()) - 1;
+    const bool periodic = take.hasPeriods();
+    const int level = periodic ? take.excitation->levelOf(options.level) : -1;
     auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
     tellDelay(found, take, output, level, options.segment);
 

@@ -12,6 +12,7 @@
 #include "Engine/Polynomial/Hammerstein/HarmonicDistortionFile.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Hammerstein/SweepModel.h"
+#include "Engine/Take/ChannelNamed.h"
 
 #include <nlohmann/json.hpp>
 
@@ -42,10 +43,7 @@ std::optional<Quantity> wantedOutput(const HarmonicsArguments& arguments, const 
 {
     if (arguments.output.empty())
         return std::nullopt;
-    const auto quantity = quantityNamed(arguments.output);
-    if (!quantity || !take.find(*quantity))
-        throw Error(Error::Kind::usage, "The take has no channel \"" + arguments.output + "\".");
-    return quantity;
+    return channelNamed(take, arguments.output).quantity;
 }
 
 /// "-41.2", "< -93.0" where it does not rise above the noise, "-" outside of what was played.

@@ -15,6 +15,7 @@
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Ranking/PolynomialFitFile.h"
+#include "Engine/Take/ChannelNamed.h"
 #include "Engine/Take/TakeFile.h"
 
 #include <algorithm>
@@ -25,15 +26,6 @@
 
 namespace excursion::cli {
 namespace {
-
-const Channel& channelNamed(const Measurement& take, const std::string& quantity)
-{
-    const auto known = quantityNamed(quantity);
-    const auto* channel = known ? take.find(*known) : nullptr;
-    if (!channel)
-        throw Error(Error::Kind::usage, "The take has no channel \"" + quantity + "\".");
-    return *channel;
-}
 
 /// The take as the model plays it: the input as it is, the output from rest.
 void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::string& folder)
@@ -121,9 +113,8 @@ void run(PnlssArguments options, Terminal& terminal)
     require(options);
     PnlssTake data;
     data.take = PreparedTake(readMeasurement(options.response.path)).measurement();
-    const auto levels = data.take.excitation ? static_cast<int>(data.take.excitation->levels.size()) : 0;
-    if (options.response.level >= std::max(levels, 1))
-        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
+    if (data.take.excitation)
+        data.take.excitation->levelOf(options.response.level);  // asked before the work, not in it
     const auto kept = options.model.empty() ? nlohmann::json() : readJson(options.model);
     choose(options, kept, data);
     options.response.output = name(data.output->quantity);

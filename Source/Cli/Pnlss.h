@@ -47,7 +47,7 @@ struct PnlssTake {
     InputOutputRecords records;
 
     Eigen::MatrixXd wholeInput() const;
-    bool periodic() const { return take.excitation && !take.excitation->lines.empty(); }
+    bool periodic() const { return take.hasPeriods(); }
 };
 
 /// Whether a fit came as far as the noise lets it, and what to try where it did not.

@@ -97,7 +97,7 @@ FittedPnlss pnlssOf(const PreparedTake& take, const Identified& linear, const Pn
                linear,
                wish,
                recordsOf(measurement, *input, *output, linear.asked.ports.level),
-               measurement.excitation && !measurement.excitation->lines.empty(),
+               measurement.hasPeriods(),
                {std::string(name(input->quantity))},
                {std::string(name(output->quantity))}};
     FittedPnlss told;

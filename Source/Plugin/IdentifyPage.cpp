@@ -42,7 +42,7 @@ Outputs outputsOf(const Findings& findings)
         for (const auto& channel : take->channels)
             if (channel.quantity != take->input().quantity)
                 add(channel.quantity);
-        if (take->excitation && !take->excitation->lines.empty())
+        if (take->hasPeriods())
             for (const double level : take->excitation->levels)
                 found.levels.add(words(nominal(level, "V")) + " rms");
     }

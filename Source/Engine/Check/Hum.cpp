@@ -46,7 +46,7 @@ double signalPower(const AveragedPeriods& averages, const Channel& channel)
     const Excitation& e = averages.excitation();
     double power = 0.0;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto& period = averages.inTime(channel, static_cast<int>(e.levels.size()) - 1, m);
+        const auto& period = averages.inTime(channel, e.loudest(), m);
         double mean = 0.0;
         for (const double value : period)
             mean += value / e.period;

@@ -29,7 +29,7 @@ struct Answer {
 
 Answer answerOf(const Measurement& take, Quantity quantity)
 {
-    const int loudest = static_cast<int>(take.excitation->levels.size()) - 1;
+    const int loudest = take.excitation->loudest();
     const auto frf = bla(take, quantity, loudest, Quantity::voltage).frf;
     Answer answer {frf.frequency, frf.value, {}};
     constexpr double clear = 0.01;  // of the power

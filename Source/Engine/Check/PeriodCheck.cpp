@@ -112,7 +112,7 @@ bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, Chann
     const Excitation& e = averages.excitation();
     const auto& lines = averages.lines();
     const std::string who(name(channel.quantity));
-    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const int loudest = e.loudest();
     if (e.periods < 2)
         return true;
 
@@ -178,7 +178,7 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
     const auto& take = averages.take();
     const Excitation& e = averages.excitation();
     const int top = averages.lines().back();
-    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const int loudest = e.loudest();
     struct Drift {
         std::size_t channel;
         PeriodShift shift;

@@ -3,8 +3,7 @@
 
 #include "Engine/Check/PeriodCheck.h"
 #include "Engine/Document/Engineering.h"
-#include "Engine/Estimate/Bla.h"
-#include "Engine/Estimate/Welch.h"
+#include "Engine/Estimate/EstimateFrf.h"
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
@@ -45,19 +44,13 @@ public:
         return verdict;
     }
 
-    bool periodic() const { return take_.excitation && !take_.excitation->lines.empty(); }
-
     Frf at(Quantity output, Quantity input, int level) const
     {
-        if (periodic())
-            return bla(take_, output, level, input).frf;
-        const auto& u = *take_.find(input);
-        const auto& y = *take_.find(output);
         WelchOptions options;
-        options.segment = segmentFor(u.samples.size(), 16, 16384, 1024);
-        if (!options.isValid(u.samples.size()))
+        options.segment = segmentFor(take_.length(), 16, 16384, 1024);
+        if (!take_.hasPeriods() && !options.isValid(take_.length()))
             return {};
-        return welch(u.samples, y.samples, take_.sampleRate, options).frf;
+        return estimateFrf(take_, output, input, level, options);
     }
 
     /// Quietest level with 30 dB of signal to noise on both channels.
@@ -72,13 +65,13 @@ public:
         }
         return loudest;
     }
-    int loudest() const { return periodic() ? static_cast<int>(take_.excitation->levels.size()) - 1 : 0; }
+    int loudest() const { return take_.hasPeriods() ? take_.excitation->loudest() : 0; }
 
 private:
     /// The verdict at the quiet level; an accusation stands only when the loudest level repeats it.
     PhysicalDelay confirmed(Quantity output, Quantity input, const std::function<PhysicalDelay(const Frf&)>& law) const
     {
-        const int level = periodic() ? quietest(output, input) : 0;
+        const int level = take_.hasPeriods() ? quietest(output, input) : 0;
         auto verdict = law(at(output, input, level));
         if ((verdict.clear || verdict.inverted) && level != loudest()) {
             const auto loud = law(at(output, input, loudest()));

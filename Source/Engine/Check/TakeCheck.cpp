@@ -139,7 +139,7 @@ CheckReport check(const AveragedPeriods& averages)
                                 + ": correct the excitation in measurement.json, or leave it out for a signal that "
                                   "does not repeat."});
 
-    const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
+    const bool described = take.hasPeriods() && take.excitation->period > 1;
     const long missing = described ? take.excitation->totalSamples() - static_cast<long>(take.length()) : 0;
     if (missing > 0) {
         problems.push_back({"dropout", std::nullopt, static_cast<double>(missing), "samples", true,

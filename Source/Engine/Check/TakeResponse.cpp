@@ -2,34 +2,11 @@
 #include "Engine/Check/TakeResponse.h"
 
 #include "Engine/Error.h"
-#include "Engine/Estimate/Bla.h"
-#include "Engine/Estimate/Welch.h"
+#include "Engine/Estimate/EstimateFrf.h"
+#include "Engine/Take/ChannelNamed.h"
 
 namespace excursion {
 namespace {
-
-template <class Channels>
-Quantity chosen(const Channels& channels, const std::string& wanted, std::optional<Quantity> other)
-{
-    if (!wanted.empty()) {
-        const auto quantity = quantityNamed(wanted);
-        for (const auto& channel : channels)
-            if (quantity && channel.quantity == *quantity)
-                return *quantity;
-        throw Error(Error::Kind::usage, "The take has no channel \"" + wanted + "\".");
-    }
-    if (!other) {
-        for (const auto first : {Quantity::voltage, Quantity::force})
-            for (const auto& channel : channels)
-                if (channel.quantity == first)
-                    return first;
-        throw Error(Error::Kind::data, "The take has neither a voltage nor a force; name an input.");
-    }
-    for (const auto& channel : channels)
-        if (channel.quantity != *other)
-            return channel.quantity;
-    throw Error(Error::Kind::data, "The take has no channel beside its input.");
-}
 
 struct Ports {
     Quantity output, input;
@@ -40,16 +17,16 @@ struct Ports {
 Ports portsOf(const Spectra& spectra, const ResponsePorts& choice)
 {
     if (!choice.input.empty()) {
-        const auto input = chosen(spectra.channels, choice.input, std::nullopt);
-        return {chosen(spectra.channels, choice.output, input), input};
+        const auto input = channelNamed(spectra, choice.input).quantity;
+        return {outputNamed(spectra, choice.output, input).quantity, input};
     }
     const auto* reference = spectra.input();
     if (!reference)
         throw Error(Error::Kind::data, "The take has neither a voltage nor a force; name an input.");
-    const auto output = chosen(spectra.channels, choice.output, reference->quantity);
+    const auto output = outputNamed(spectra, choice.output, reference->quantity).quantity;
     if (output != reference->quantity)
         return {output, reference->quantity};
-    return {output, chosen(spectra.channels, "", output)};  // the admittance of an impedance
+    return {output, outputNamed(spectra, "", output).quantity};  // the admittance of an impedance
 }
 
 Frf ratio(const Spectra& spectra, Quantity output, Quantity input)
@@ -83,24 +60,16 @@ TakeResponse responseOf(const PreparedTake& take, const ResponsePorts& choice)
     const auto& measurement = take.measurement();
     response.remarks = measurement.remarks;
     const auto input = choice.input.empty() ? measurement.input().quantity
-                                            : chosen(measurement.channels, choice.input, std::nullopt);
-    const auto output = chosen(measurement.channels, choice.output, input);
+                                            : channelNamed(measurement, choice.input).quantity;
+    const auto output = outputNamed(measurement, choice.output, input).quantity;
     response.output = output;
     response.input = input;
     response.sampleRate = measurement.sampleRate;
     response.microphoneDistance = measurement.driver.microphoneDistance;
-    if (measurement.excitation && !measurement.excitation->lines.empty()) {
-        const int levels = static_cast<int>(measurement.excitation->levels.size());
-        if (choice.level >= levels)
-            throw Error(Error::Kind::usage, "The take has " + std::to_string(levels)
-                                                + (levels == 1 ? " level" : " levels") + ", numbered from 0.");
-        response.frf = bla(measurement, output, choice.level >= 0 ? choice.level : levels - 1, input).frf;
-    } else {
-        if (!choice.input.empty() && input != measurement.input().quantity)
-            throw Error(Error::Kind::data,
-                        "A take without periods gives responses to its own input only; name no other input.");
-        response.frf = welch(measurement, output, {}).frf;
-    }
+    if (!measurement.hasPeriods() && input != measurement.input().quantity)
+        throw Error(Error::Kind::data,
+                    "A take without periods gives responses to its own input only; name no other input.");
+    response.frf = estimateFrf(measurement, output, input, choice.level);
     return response;
 }
 

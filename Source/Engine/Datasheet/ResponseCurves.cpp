@@ -26,7 +26,7 @@ void requireCoil(bool electrical)
 /// Index of the level of so many V rms, or of the loudest for 0.
 int levelNear(const Measurement& take, double level)
 {
-    if (!take.excitation || take.excitation->lines.empty() || take.excitation->levels.empty())
+    if (!take.hasPeriods() || take.excitation->levels.empty())
         throw Error(Error::Kind::data, "The take has no periods, so its response at a level cannot be told; excursion "
                                        "bla estimates one over the whole record.");
     const auto& levels = take.excitation->levels;
@@ -46,8 +46,7 @@ int levelNear(const Measurement& take, double level)
 void requireChannel(const Measurement& take, Quantity quantity)
 {
     requireCoil(take.input().quantity == Quantity::voltage);
-    if (!take.find(quantity))
-        throw Error(Error::Kind::data, "The take has no " + std::string(name(quantity)) + ".");
+    take.channel(quantity);  // throws when it is missing
 }
 
 /// To the level of 2.83 V at 1 m over 20 uPa.

@@ -24,6 +24,17 @@ std::vector<const Score*> backed(const std::vector<Score>& scores, const std::se
     return alone.empty() ? all : alone;
 }
 
+/// Beside what a vote backs, the law that alone would leave less than any other effect. Derivatives speak against a
+/// strong law: what it does at one level is not what it does at another until the model follows it.
+void takeLeaderIn(std::vector<const Score*>& trial, const std::vector<Score>& scores,
+                  const std::set<std::string>& without)
+{
+    const auto& leader = scores.front();
+    if (!leader.effect->linear() && !without.contains(leader.effect->id())
+        && std::find(trial.begin(), trial.end(), &leader) == trial.end())
+        trial.push_back(&leader);
+}
+
 /// All effects that a vote may have spoken against in error. Those that are made of resonances show in lines where
 /// nothing else does.
 std::vector<const Score*> possible(const std::vector<Score>& scores, const std::set<std::string>& without)
@@ -92,68 +103,150 @@ bool leadsBy(const Waypoints& path, const Waypoint& place)
     });
 }
 
-/// Puts effects into a whole by rounds of voting. Whether it came to where no other search has been.
+/// A whole that effects are put into.
+class Growth {
+public:
+    Growth(Grown& whole, const Model& base, const Record& record, WholeSearch& search)
+        : whole_(whole), base_(base), record_(record), search_(search)
+    {
+        search_.chooseResiduals(whole_.model);
+        now_ = search_.left(whole_.model);
+    }
+
+    bool isNoise() const { return now_.isNoise(); }
+    Waypoint place() const
+    {
+        const auto ids = whole_.model.effectIds();
+        return {{ids.begin(), ids.end()}, now_.chiSquaredPerValue};
+    }
+
+    enum class Outcome { grown, again, stuck };
+
+    /// All at once that a vote backs; `again` where the next vote is to be without what stood for something else.
+    Outcome byVote(const Progress&);
+
+    /// One law, where votes lead no further and much is left: each is fitted, and the one that leaves least comes in.
+    /// Whether there is one.
+    bool byTrial(const Progress&);
+
+private:
+    void takeIn(Model model, const FitSummary& fit, const Left& left)
+    {
+        whole_.model = std::move(model);
+        whole_.fit = fit;
+        now_ = left;
+        scores_.clear();
+    }
+
+    Grown& whole_;
+    const Model& base_;
+    const Record& record_;
+    WholeSearch& search_;
+    Left now_;
+    std::vector<Score> scores_;  // of the whole, once it was asked
+    bool begun_ = false;
+    // What stood for something else in the last round, or brought nothing: others come first in this one.
+    std::set<std::string> strange_;
+};
+
+constexpr double worthARound = 1.0;  // dB
+
+Growth::Outcome Growth::byVote(const Progress& progress)
+{
+    if (scores_.empty()) {
+        if (std::exchange(begun_, true)) {  // laws of too low a degree hide what is small, and make others seem needed
+            search_.raiseDegrees(whole_.model);
+            now_ = search_.left(whole_.model);
+        }
+        scores_ = score(whole_.model, record_, search_.test(), progress.part(0.0, 0.4)).scores;
+    }
+    auto trial = backed(scores_, strange_);
+    if (trial.empty() && record_.noiseKnown && now_.chiSquaredPerValue < nearNoise)
+        trial = possible(scores_, strange_);
+    if (!trial.empty() && now_.chiSquaredPerValue > nearNoise)
+        takeLeaderIn(trial, scores_, strange_);
+    const auto linear = linearBeside(trial, scores_, strange_);
+    if (trial.empty() && linear.empty())
+        return Outcome::stuck;
+    auto fuller = withAll(trial, linear, whole_.model, search_, progress);
+    const auto tries = added(fuller, whole_.model);
+    if (tries.empty())
+        return Outcome::stuck;
+    const auto summary = search_.fit(fuller, progress.part(0.4, 0.8));
+    if (!summary.usable())
+        return Outcome::stuck;
+    fuller = withoutThoseAtRest(std::move(fuller), base_);
+    const auto before = std::exchange(strange_, search_.takeOutImplausible(fuller));
+    search_.chooseResiduals(fuller);
+    now_ = search_.left(whole_.model);
+    auto then = search_.left(fuller);
+    if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes before the refinement
+        search_.findPartsAnew(fuller);
+        then = search_.left(fuller);
+        // What goes hardly makes it leave less, unless it is what makes it run away.
+        if (then.channels.empty() || search_.lost(now_, then) > worthARound) {
+            WholeSearch::Removals tried;
+            search_.takeOut(fuller, false, isNeeded, tried);
+            then = search_.left(fuller);
+        }
+    }
+    if (search_.lost(now_, then) > worthARound) {
+        takeIn(std::move(fuller), summary, then);
+        return Outcome::grown;
+    }
+    if (strange_.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
+        strange_ = tries;
+    // else the next round would be this one again
+    return strange_.empty() || strange_ == before ? Outcome::stuck : Outcome::again;
+}
+
+bool Growth::byTrial(const Progress& progress)
+{
+    constexpr double convincing = 3.0;  // dB
+    if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise || !search_.isFirstTrialOf(whole_.model))
+        return false;
+    auto laws = possible(scores_, {});
+    std::erase_if(laws, [](const Score* s) { return s->effect->linear(); });
+    struct Tried {
+        Model model;
+        FitSummary fit;
+        Left left;
+    };
+    std::optional<Tried> best;
+    double most = convincing;
+    for (const auto* law : laws) {
+        Tried one;
+        one.fit = search_.tryLaw(one.model, *law, progress);
+        if (!one.fit.usable() || !isAtWork(one.model.components.back()))
+            continue;
+        one.left = search_.left(one.model);
+        if (const double gain = search_.lost(now_, one.left); gain > most) {
+            most = gain;
+            best = std::move(one);
+        }
+    }
+    if (!best)
+        return false;
+    takeIn(std::move(best->model), best->fit, best->left);
+    strange_.clear();
+    return true;
+}
+
+/// Puts effects into a whole. Whether it came to where no other search has been.
 /// @param known  of another search
 bool grow(Grown& whole, const Model& base, const Record& record, WholeSearch& search, const Waypoints& known,
           const Progress& progress)
 {
     constexpr int rounds = 12;
-    constexpr double worthARound = 1.0;  // dB
-    search.chooseResiduals(whole.model);
-    auto now = search.left(whole.model);
-    std::vector<Score> scores;  // of the whole, once it was asked
-    // What stood for something else in the last round, or brought nothing: others come first in this one.
-    std::set<std::string> strange;
-    for (int n = 0; n < rounds && !now.isNoise(); ++n) {
+    Growth growth(whole, base, record, search);
+    for (int n = 0; n < rounds && !growth.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
-        if (scores.empty()) {
-            if (n > 0) {  // laws of too low a degree hide what is small, and make others seem needed
-                search.raiseDegrees(whole.model);
-                now = search.left(whole.model);
-            }
-            scores = score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores;
-        }
-        auto trial = backed(scores, strange);
-        if (trial.empty() && record.noiseKnown && now.chiSquaredPerValue < nearNoise)
-            trial = possible(scores, strange);
-        const auto linear = linearBeside(trial, scores, strange);
-        if (trial.empty() && linear.empty())
-            break;
-        auto fuller = withAll(trial, linear, whole.model, search, part);
-        const auto tries = added(fuller, whole.model);
-        if (tries.empty())
-            break;
-        const auto summary = search.fit(fuller, part.part(0.4, 0.8));
-        if (!summary.usable())
-            break;
-        fuller = withoutThoseAtRest(std::move(fuller), base);
-        const auto before = std::exchange(strange, search.takeOutImplausible(fuller));
-        search.chooseResiduals(fuller);
-        now = search.left(whole.model);
-        auto then = search.left(fuller);
-        if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes before the refinement
-            search.findPartsAnew(fuller);
-            then = search.left(fuller);
-            // What goes hardly makes it leave less, unless it is what makes it run away.
-            if (then.channels.empty() || search.lost(now, then) > worthARound) {
-                WholeSearch::Removals tried;
-                search.takeOut(fuller, false, isNeeded, tried);
-                then = search.left(fuller);
-            }
-        }
-        if (!(search.lost(now, then) > worthARound)) {
-            if (strange.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
-                strange = tries;
-            if (strange.empty() || strange == before)  // the next round would be this one again
-                break;
+        const auto outcome = growth.byVote(part.part(0.0, 0.8));
+        if (outcome == Growth::Outcome::again)
             continue;
-        }
-        now = then;
-        whole.model = std::move(fuller);
-        whole.fit = summary;
-        scores.clear();
-        const auto ids = whole.model.effectIds();
-        whole.path.push_back({{ids.begin(), ids.end()}, now.chiSquaredPerValue});
+        if (outcome == Growth::Outcome::stuck && !growth.byTrial(part.part(0.8, 1.0)))
+            break;
+        whole.path.push_back(growth.place());
         if (leadsBy(known, whole.path.back()))
             return false;
     }

@@ -5,9 +5,27 @@
 #include "Engine/Loudspeaker/FitResponse.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion {
 namespace {
+
+double powerOf(double db) { return std::pow(10.0, 0.1 * db); }
+
+/// By how many times what an effect removed from lines that were not played exceeds what is left there in the end, at
+/// the loudest level, in the channel and parity where it did best. Only what distorts reaches them: a parameter that
+/// wanders, or a linear effect that is missing, leaves its error on the lines that were played, however large it is.
+double worthOnSilentLines(const Comparison& before, const Comparison& after, const Comparison& last)
+{
+    double best = 0.0;
+    for (std::size_t c = 0; c < before.channels.size(); ++c)
+        for (const auto parity : {&ErrorKinds::odd, &ErrorKinds::even}) {
+            const auto at = [&](const Comparison& one) { return one.channels[c].kindsByLevel.back().*parity; };
+            if (const auto then = at(before), now = at(after), end = at(last); then && now && end)
+                best = std::max(best, (powerOf(*then) - powerOf(*now)) / powerOf(*end));
+        }
+    return best;
+}
 
 /// By how many times what an effect removed exceeds what is left in the end, in the channel where it did best; channels
 /// that held less than a hundredth of the largest excess have no say.
@@ -39,9 +57,11 @@ void withdrawDoubtful(Ladder& ladder)
         return;
     constexpr double convincing = 3.0;
     const Comparison last = ladder.rungs.back().comparison;
-    while (ladder.rungs.size() > 1 && !stoodAlone(ladder.rungs[ladder.rungs.size() - 2], ladder.rungs.back())
-           && worth(ladder.rungs[ladder.rungs.size() - 2].comparison, ladder.rungs.back().comparison, last)
-                  < convincing) {
+    const auto isDoubtful = [&](const Rung& before, const Rung& rung) {
+        return !stoodAlone(before, rung) && worth(before.comparison, rung.comparison, last) < convincing
+               && worthOnSilentLines(before.comparison, rung.comparison, last) < convincing;
+    };
+    while (ladder.rungs.size() > 1 && isDoubtful(ladder.rungs[ladder.rungs.size() - 2], ladder.rungs.back())) {
         ladder.withdrawn.push_back(ladder.rungs.back().added);
         ladder.rungs.pop_back();
     }

@@ -86,7 +86,9 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
 {
     chooseResiduals(model);
     auto now = left(model);
-    if (now.chiSquaredPerValue < clean)
+    const auto ids = model.effectIds();
+    const auto isSuspect = [&](const std::string& id) { return !base_.has(id) && mayStandIn(model, id); };
+    if (now.chiSquaredPerValue < clean && std::none_of(ids.begin(), ids.end(), isSuspect))
         return false;
     if (auto settled = model; fit(settled, onTrial, progress).usable())  // as what it is compared with
         if (auto then = left(settled); then.chiSquaredPerValue < now.chiSquaredPerValue) {
@@ -97,28 +99,34 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
     const Progress stoppable = progress.part(0.0, 0.0);
-    // dB that the model leaves more than the other, less what that has to bring
-    const auto gainOf = [&](Model& other) {
+    // dB that the model leaves more than the other, less what that has to bring: nothing where it claims less, as what
+    // is only heard need not be a part that the cone feels
+    const auto gainOf = [&](Model& other, bool claimsLess) {
         constexpr double none = 0.0;
         if (!findNewest(other, still) || !newestIsPlausible(other)
             || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue
             || !fit(other, onTrial, stoppable).usable() || !strangeIn(other).empty())
             return none;
         const auto then = left(other);
+        if (claimsLess && lost(then, now) < hardlyNeeded)
+            return hardlyNeeded - lost(then, now);
         const double price = freeParameters(other).size() > freeParameters(model).size() ? dearer : hardlyNeeded;
         return then.chiSquaredPerValue < now.chiSquaredPerValue ? lost(now, then) - price : none;
     };
     bool any = false;
-    for (const auto& id : model.effectIds()) {
-        if (base_.has(id) || !effectNamed(id).linear())
+    for (const auto& id : ids) {
+        const bool suspect = isSuspect(id), isClean = now.chiSquaredPerValue < clean;
+        if (base_.has(id) || !effectNamed(id).linear() || (isClean && !suspect))
             continue;
         std::optional<Model> best;
         double most = 0.0;
         for (const auto* effect : catalogue()) {
-            if (!effect->linear() || model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
+            const bool claimsLess = suspect && !effect->felt();
+            if (!effect->linear() || model.has(effect->id()) || (isClean && !claimsLess)
+                || !whyUnseen(*effect, seen).empty())
                 continue;
             auto other = withEffect(withoutEffect(model, id), *effect, range);
-            if (const double gain = gainOf(other); gain > most) {
+            if (const double gain = gainOf(other, claimsLess); gain > most) {
                 most = gain;
                 best = std::move(other);
             }

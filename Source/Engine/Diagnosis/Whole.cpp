@@ -135,8 +135,8 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
             return false;
-        return unknownLeft ? one.vote.standsAlone()
-                           : one.vote.backs() || whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
+        const bool completes = whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
+        return unknownLeft ? one.vote.standsAlone() : completes || (one.vote.backs() && !one.suspect);
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
     for (int n = 0; n <= rounds; ++n) {

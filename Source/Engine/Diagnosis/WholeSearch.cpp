@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/FindAnew.h"
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
+#include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 
@@ -28,16 +29,14 @@ std::set<std::string> implausible(const Model& model)
     return found;
 }
 
-/// Resonances that the cone feels can be whatever a box or a suspension in a wrong shape lacks, however much they are
-/// missed then.
+}  // namespace
+
 bool mayStandIn(const Model& model, const std::string& effect)
 {
     const auto& component = *model.find(effect);
     return component.effect->linear() && component.effect->felt()
            && !component.effect->parts(component.operatingRange).empty();
 }
-
-}  // namespace
 
 WholeSearch::WholeSearch(const Model& base, const Record& record, const FitOptions& options)
     : base_(base), record_(record), sections_(trialSections(record, 2)), options_(options)
@@ -79,6 +78,18 @@ FitSummary WholeSearch::fitExactly(Model& model) const
     auto options = within(brief);
     options.fedGradient = false;
     return excursion::fit(model, record_, sections_, options, {});
+}
+
+FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progress& progress) const
+{
+    return tryFit(model, proposed, record_, sections_, within(brief), progress);
+}
+
+bool WholeSearch::isFirstTrialOf(const Model& model)
+{
+    auto ids = model.effectIds();
+    std::sort(ids.begin(), ids.end());
+    return triedBeside_.insert(std::move(ids)).second;
 }
 
 void WholeSearch::findPartsAnew(Model& model) const
@@ -212,6 +223,7 @@ WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough,
                   ? Removal {known->second.vote, {}}
                   : without(model, now, effect, vote, thorough, still);
         one.plausible = plausible;
+        one.suspect = mayStandIn(model, effect);
     }
     return tried;
 }
@@ -240,7 +252,8 @@ bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(
                        {},
                        then.chiSquaredPerValue / now.chiSquaredPerValue,
                        then.areNoise(),
-                       !implausible(model).contains(effect)}))
+                       !implausible(model).contains(effect),
+                       removal.suspect}))
                 continue;
         }
         model = std::move(leaner);

@@ -49,7 +49,12 @@ struct Removal {
     double times = std::numeric_limits<double>::infinity();
     bool staysNoise = false;  ///< every channel's error without it
     bool plausible = true;    ///< as it stands in the model; else it stands for something else
+    bool suspect = false;     ///< see mayStandIn()
 };
+
+/// Whether an effect is made of resonances that the cone feels. They can be whatever a box or a suspension in a wrong
+/// shape lacks, however much they are missed then.
+bool mayStandIn(const Model&, const std::string& effect);
 
 /// The steps of a search for all effects of a loudspeaker at once: they judge by two realizations a level, and by what
 /// a simulation leaves where that is less than what fed laws leave. A removal that fed laws miss much is not played.
@@ -69,6 +74,10 @@ public:
     double lost(const Left& more, const Left& less) const;
 
     FitSummary fit(Model&, const Progress& = {}) const;
+    /// The model of a score with its newest effect, which is a law, fitted briefly.
+    FitSummary tryLaw(Model&, const Score&, const Progress& = {}) const;
+    /// Whether laws have not been tried one by one yet beside just these effects.
+    bool isFirstTrialOf(const Model&);
     void findPartsAnew(Model&) const;  ///< see FindAnew.h
     void raiseDegrees(Model&) const;   ///< of laws, as far as it pays
 
@@ -137,6 +146,7 @@ private:
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions options_;
+    std::set<std::vector<std::string>> triedBeside_;  // sorted effects
 };
 
 }  // namespace excursion

@@ -12,13 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-const Channel& channelOf(const Measurement& take, Quantity quantity)
-{
-    if (const auto* channel = take.find(quantity))
-        return *channel;
-    throw Error(Error::Kind::data, "The take has no " + std::string(name(quantity)) + " channel.");
-}
-
 /// The excited lines of the spectra of all periods of one realization.
 struct Realization {
     std::vector<std::vector<Complex>> U, Y;  ///< [period][line number]
@@ -47,8 +40,8 @@ BlaResult bla(const Measurement& take, Quantity outputQuantity, int level, std::
     if (level < 0 || level >= static_cast<int>(e.levels.size()))
         throw Error(Error::Kind::usage, "The take has levels 0 to " + std::to_string(e.levels.size() - 1) + ", not "
                                             + std::to_string(level) + ".");
-    const Channel& input = inputQuantity ? channelOf(take, *inputQuantity) : take.input();
-    const Channel& output = channelOf(take, outputQuantity);
+    const Channel& input = inputQuantity ? take.channel(*inputQuantity) : take.input();
+    const Channel& output = take.channel(outputQuantity);
     const int M = e.realizations, P = e.periods;
     const std::size_t F = lines.size();
 

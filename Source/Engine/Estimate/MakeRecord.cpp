@@ -153,7 +153,7 @@ int quietestRealization(const AveragedPeriods& averages)
 {
     const auto& take = averages.take();
     const auto& e = averages.excitation();
-    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const int loudest = e.loudest();
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
         // The pressure of a piston follows the acceleration.

@@ -235,10 +235,7 @@ RestGrowth restGrowth(std::span<const double> input, std::span<const double> out
 
 RestGrowth restGrowth(const Measurement& take, Quantity output, const WelchOptions& options)
 {
-    const auto* channel = take.find(output);
-    if (!channel)
-        throw Error(Error::Kind::data, "The take has no " + std::string(name(output)) + " channel.");
-    return restGrowth(take.input().samples, channel->samples, take.sampleRate, options);
+    return restGrowth(take.input().samples, take.channel(output).samples, take.sampleRate, options);
 }
 
 }  // namespace excursion

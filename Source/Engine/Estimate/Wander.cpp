@@ -111,7 +111,7 @@ std::optional<double> wanderDb(const AveragedPeriods& averages, const Channel& c
     const auto& e = averages.excitation();
     if (e.periods < 2 || e.levels.size() < 2)
         return std::nullopt;
-    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const int loudest = e.loudest();
     const auto loud = bandsOf(averages, channel, loudest), quiet = bandsOf(averages, channel, 0);
     constexpr std::size_t fewest = 4;
     if (loud.size() < fewest || quiet.size() != loud.size()

@@ -125,10 +125,7 @@ WelchResult welch(std::span<const double> input, std::span<const double> output,
 
 WelchResult welch(const Measurement& take, Quantity output, const WelchOptions& options)
 {
-    const auto* channel = take.find(output);
-    if (!channel)
-        throw Error(Error::Kind::data, "The take has no " + std::string(name(output)) + " channel.");
-    return welch(take.input().samples, channel->samples, take.sampleRate, options);
+    return welch(take.input().samples, take.channel(output).samples, take.sampleRate, options);
 }
 
 }  // namespace excursion

@@ -33,7 +33,7 @@ double scatterOf(const Measurement& take, const Channel& output, int level, int 
 InputOutputRecords recordsOf(const Measurement& take, const Channel& input, const Channel& output, int wantedLevel)
 {
     InputOutputRecords records;
-    if (!take.excitation || take.excitation->lines.empty()) {
+    if (!take.hasPeriods()) {
         const auto N = static_cast<Eigen::Index>(take.length()), cut = N * 2 / 3;
         const auto u = columnOf(input.samples), y = columnOf(output.samples);
         const Eigen::Index skip = std::min<Eigen::Index>(1000, N / 10);
@@ -44,7 +44,7 @@ InputOutputRecords recordsOf(const Measurement& take, const Channel& input, cons
     const auto& excitation = periodicExcitation(take);
     // Long enough for the slowest pole of a loudspeaker, which a few thousand samples at a high rate are not.
     const auto before = std::max<Eigen::Index>(std::min(excitation.period, 4096), std::lround(0.2 * take.sampleRate));
-    const int level = wantedLevel >= 0 ? wantedLevel : static_cast<int>(excitation.levels.size()) - 1;
+    const int level = excitation.levelOf(wantedLevel);
     double scatter = 0.0, power = 0.0;
     for (int r = 0; r < excitation.realizations; ++r) {
         const auto mean = averagePeriod(take, output, level, r);

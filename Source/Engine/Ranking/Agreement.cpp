@@ -16,7 +16,7 @@ namespace {
 std::vector<double> scatterOf(const Measurement& take, const Channel& channel)
 {
     std::vector<double> scatter(channel.samples.size(), 0.0);
-    if (!take.excitation || take.excitation->lines.empty() || take.excitation->periods < 2)
+    if (!take.hasPeriods() || take.excitation->periods < 2)
         return scatter;
     const auto& excitation = *take.excitation;
     for (int level = 0; level < static_cast<int>(excitation.levels.size()); ++level)

@@ -149,11 +149,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
             output = &channel;
     if (!output || output == &input)
         throw Error(Error::Kind::data, "The take has no such channel beside its input.");
-    const bool periodic = take.excitation && !take.excitation->lines.empty();
-    const int levels = periodic ? static_cast<int>(take.excitation->levels.size()) : 0;
-    const int level = options.level >= 0 ? options.level : levels - 1;
-    if (level >= std::max(levels, 1))
-        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
+    const int level = take.hasPeriods() ? take.excitation->levelOf(options.level) : -1;
 
     progress.at(0.0, "the linear model");
     const auto response = frequencyDataOf(responseOf(given, {std::string(name(output->quantity)), {}, level}).frf);

@@ -51,7 +51,22 @@ std::optional<Quantity> quantityNamed(std::string_view text)
     return std::nullopt;
 }
 
+int Excitation::levelOf(int wanted) const
+{
+    if (wanted > loudest())
+        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels.size())
+                                            + (levels.size() == 1 ? " level" : " levels") + ", numbered from 0.");
+    return wanted >= 0 ? wanted : loudest();
+}
+
 const Channel* Measurement::find(Quantity quantity) const { return findIn(channels, quantity); }
+
+const Channel& Measurement::channel(Quantity quantity) const
+{
+    if (const auto* found = find(quantity))
+        return *found;
+    throw Error(Error::Kind::data, "The take has no " + std::string(name(quantity)) + " channel.");
+}
 
 const Spectra::Channel* Spectra::find(Quantity quantity) const { return findIn(channels, quantity); }
 

@@ -37,6 +37,10 @@ struct Excitation {
     double bandLow = 0.0, bandHigh = 0.0;  ///< Hz
     std::vector<int> lines;                ///< excited DFT lines of one period, ascending; empty: not known yet
 
+    int loudest() const { return static_cast<int>(levels.size()) - 1; }
+    /// @param wanted  a place in `levels`; below 0: the loudest. Throws Error (usage) when there is no such level.
+    int levelOf(int wanted) const;
+
     int periodsPerRealization() const { return settlePeriods + periods; }
     long samplesPerRealization() const { return static_cast<long>(period) * periodsPerRealization(); }
     long totalSamples() const { return samplesPerRealization() * realizations * static_cast<long>(levels.size()); }
@@ -67,7 +71,10 @@ struct Measurement {
     std::vector<std::string> remarks {};
 
     std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }
-    const Channel* find(Quantity) const;  ///< nullptr when absent
+    /// whether it repeats periods whose excited lines are known
+    bool hasPeriods() const { return excitation && !excitation->lines.empty(); }
+    const Channel* find(Quantity) const;     ///< nullptr when absent
+    const Channel& channel(Quantity) const;  ///< throws Error (data) when absent
     /// the voltage, or the force of a mechanical-only driver; throws Error (data)
     const Channel& input() const;
 };

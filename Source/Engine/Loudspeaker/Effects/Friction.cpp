@@ -52,6 +52,13 @@ public:
                 {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25}};
     }
 
+    /// Slips from the first tenth of the way on, or hardly at all: derivatives at one tell nothing of the other.
+    std::vector<std::vector<double>> starts(const OperatingRange& e) const override
+    {
+        const double X = e.displacement;
+        return {{0.0, 0.08 * X, 2.0, 0.0, 0.0}, {0.0, 0.6 * X, 2.0, 0.0, 0.0}};
+    }
+
     int memorySize(const OperatingRange&) const override { return elements; }
     int coefficientCount(const OperatingRange&) const override { return 3 + elements; }
 
