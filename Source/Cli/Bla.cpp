@@ -282,7 +282,7 @@ void run(const BlaArguments& options, Terminal& terminal)
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
     const bool periodic = take.hasPeriods();
-    const int level = periodic ? take.excitation->levelOf(options.level) : -1;
+    const int level = take.levelOf(options.level);
     auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
     tellDelay(found, take, output, level, options.segment);
 

@@ -70,11 +70,7 @@ void choose(const PnlssArguments& options, const nlohmann::json& kept, PnlssTake
         data.output = &channelNamed(data.take, outputs[0].text());
     } else {
         data.input = &data.take.input();
-        std::string output = options.response.output;
-        for (const auto& channel : data.take.channels)
-            if (output.empty() && channel.quantity != data.input->quantity)
-                output = name(channel.quantity);
-        data.output = &channelNamed(data.take, output);
+        data.output = &outputNamed(data.take, options.response.output, data.input->quantity);
     }
     data.records = recordsOf(data.take, *data.input, *data.output, options.response.level);
     if (!isFractional(options, kept) && !data.periodic())
@@ -113,8 +109,7 @@ void run(PnlssArguments options, Terminal& terminal)
     require(options);
     PnlssTake data;
     data.take = PreparedTake(readMeasurement(options.response.path)).measurement();
-    if (data.take.excitation)
-        data.take.excitation->levelOf(options.response.level);  // asked before the work, not in it
+    data.take.levelOf(options.response.level);  // asked before the work, not in it
     const auto kept = options.model.empty() ? nlohmann::json() : readJson(options.model);
     choose(options, kept, data);
     options.response.output = name(data.output->quantity);

@@ -43,5 +43,6 @@ TEST_CASE("A hysteresis that hardly slips is found beside a drag, and creep does
     CHECK(whole->model.has("friction"));
     CHECK(whole->model.has("damping-velocity"));
     CHECK_FALSE(whole->model.has("creep"));
+    search.chooseResiduals(whole->model);
     CHECK(search.left(whole->model).chiSquaredPerValue < nearNoise);
 }

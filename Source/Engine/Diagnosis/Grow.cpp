@@ -24,15 +24,15 @@ std::vector<const Score*> backed(const std::vector<Score>& scores, const std::se
     return alone.empty() ? all : alone;
 }
 
-/// Beside what a vote backs, the law that alone would leave less than any other effect. Derivatives speak against a
-/// strong law: what it does at one level is not what it does at another until the model follows it.
-void takeLeaderIn(std::vector<const Score*>& trial, const std::vector<Score>& scores,
-                  const std::set<std::string>& without)
+/// The law that alone would clearly leave less than the model and than any other effect; none where that is a linear
+/// effect. Derivatives speak against a strong law: what it does at one level is not what it does at another until the
+/// model follows it.
+const Score* leaderOf(const ScoreResult& asked, const std::set<std::string>& without)
 {
-    const auto& leader = scores.front();
-    if (!leader.effect->linear() && !without.contains(leader.effect->id())
-        && std::find(trial.begin(), trial.end(), &leader) == trial.end())
-        trial.push_back(&leader);
+    constexpr double clearly = 0.9;
+    const auto& first = asked.scores.front();
+    const bool leads = !first.effect->linear() && first.chiSquaredPerValue < clearly * asked.chiSquaredPerValue;
+    return leads && !without.contains(first.effect->id()) ? &first : nullptr;
 }
 
 /// All effects that a vote may have spoken against in error. Those that are made of resonances show in lines where
@@ -97,10 +97,7 @@ Model withoutThoseAtRest(Model model, const Model& base)
 bool leadsBy(const Waypoints& path, const Waypoint& place)
 {
     constexpr double same = 1e-3;
-    return std::any_of(path.begin(), path.end(), [&](const Waypoint& one) {
-        return one.effects == place.effects
-               && std::abs(one.chiSquaredPerValue - place.chiSquaredPerValue) < same * place.chiSquaredPerValue;
-    });
+    return std::any_of(path.begin(), path.end(), [&](const Waypoint& one) { return isNear(one, place, same); });
 }
 
 /// A whole that effects are put into.
@@ -109,8 +106,7 @@ public:
     Growth(Grown& whole, const Model& base, const Record& record, WholeSearch& search)
         : whole_(whole), base_(base), record_(record), search_(search)
     {
-        search_.chooseResiduals(whole_.model);
-        now_ = search_.left(whole_.model);
+        lookAgain();
     }
 
     bool isNoise() const { return now_.isNoise(); }
@@ -122,20 +118,24 @@ public:
 
     enum class Outcome { grown, again, stuck };
 
-    /// All at once that a vote backs; `again` where the next vote is to be without what stood for something else.
+    /// All at once that a vote backs, and the leader; `again` where the next round is to be without some of them.
     Outcome byVote(const Progress&);
 
-    /// One law, where votes lead no further and much is left: each is fitted, and the one that leaves least comes in.
-    /// Whether there is one.
+    /// One law, where votes lead no further and much is left: each is fitted, and of those that take 3 dB off a channel
+    /// the one comes in that leaves least. Whether there is one.
     bool byTrial(const Progress&);
 
 private:
-    void takeIn(Model model, const FitSummary& fit, const Left& left)
+    void lookAgain()
+    {
+        search_.chooseResiduals(whole_.model);
+        now_ = search_.left(whole_.model);
+    }
+    void takeIn(Model model, const FitSummary& fit)
     {
         whole_.model = std::move(model);
         whole_.fit = fit;
-        now_ = left;
-        scores_.clear();
+        asked_ = {};
     }
 
     Grown& whole_;
@@ -143,7 +143,7 @@ private:
     const Record& record_;
     WholeSearch& search_;
     Left now_;
-    std::vector<Score> scores_;  // of the whole, once it was asked
+    ScoreResult asked_;  // of the whole; empty until it was asked
     bool begun_ = false;
     // What stood for something else in the last round, or brought nothing: others come first in this one.
     std::set<std::string> strange_;
@@ -153,28 +153,38 @@ constexpr double worthARound = 1.0;  // dB
 
 Growth::Outcome Growth::byVote(const Progress& progress)
 {
-    if (scores_.empty()) {
+    if (asked_.scores.empty()) {
         if (std::exchange(begun_, true)) {  // laws of too low a degree hide what is small, and make others seem needed
             search_.raiseDegrees(whole_.model);
             now_ = search_.left(whole_.model);
         }
-        scores_ = score(whole_.model, record_, search_.test(), progress.part(0.0, 0.4)).scores;
+        asked_ = score(whole_.model, record_, search_.test(), progress.part(0.0, 0.4));
     }
-    auto trial = backed(scores_, strange_);
-    if (trial.empty() && record_.noiseKnown && now_.chiSquaredPerValue < nearNoise)
-        trial = possible(scores_, strange_);
-    if (!trial.empty() && now_.chiSquaredPerValue > nearNoise)
-        takeLeaderIn(trial, scores_, strange_);
-    const auto linear = linearBeside(trial, scores_, strange_);
+    if (asked_.scores.empty())
+        return Outcome::stuck;
+    auto trial = backed(asked_.scores, strange_);
+    const bool near = record_.noiseKnown && now_.chiSquaredPerValue < nearNoise;
+    if (trial.empty() && near)
+        trial = possible(asked_.scores, strange_);
+    const auto* leader = trial.empty() || near || !record_.noiseKnown ? nullptr : leaderOf(asked_, strange_);
+    if (leader && std::find(trial.begin(), trial.end(), leader) != trial.end())
+        leader = nullptr;
+    if (leader)
+        trial.push_back(leader);
+    const auto linear = linearBeside(trial, asked_.scores, strange_);
     if (trial.empty() && linear.empty())
         return Outcome::stuck;
     auto fuller = withAll(trial, linear, whole_.model, search_, progress);
     const auto tries = added(fuller, whole_.model);
     if (tries.empty())
         return Outcome::stuck;
-    const auto summary = search_.fit(fuller, progress.part(0.4, 0.8));
+    const auto withoutLeader = [&] {  // it may have taken those down that the vote backs
+        strange_ = {leader->effect->id()};
+        return Outcome::again;
+    };
+    const auto summary = search_.fitFromEachStart(fuller, tries, progress.part(0.4, 0.8));
     if (!summary.usable())
-        return Outcome::stuck;
+        return leader ? withoutLeader() : Outcome::stuck;
     fuller = withoutThoseAtRest(std::move(fuller), base_);
     const auto before = std::exchange(strange_, search_.takeOutImplausible(fuller));
     search_.chooseResiduals(fuller);
@@ -191,9 +201,12 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         }
     }
     if (search_.lost(now_, then) > worthARound) {
-        takeIn(std::move(fuller), summary, then);
+        takeIn(std::move(fuller), summary);
+        now_ = then;
         return Outcome::grown;
     }
+    if (leader)
+        return withoutLeader();
     if (strange_.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
         strange_ = tries;
     // else the next round would be this one again
@@ -203,32 +216,32 @@ Growth::Outcome Growth::byVote(const Progress& progress)
 bool Growth::byTrial(const Progress& progress)
 {
     constexpr double convincing = 3.0;  // dB
-    if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise || !search_.isFirstTrialOf(whole_.model))
+    lookAgain();                        // what was rejected chose the residuals
+    if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise || !search_.beginTrialsAt(place()))
         return false;
-    auto laws = possible(scores_, {});
+    auto laws = possible(asked_.scores, {});
     std::erase_if(laws, [](const Score* s) { return s->effect->linear(); });
-    struct Tried {
-        Model model;
-        FitSummary fit;
-        Left left;
-    };
-    std::optional<Tried> best;
-    double most = convincing;
-    for (const auto* law : laws) {
-        Tried one;
-        one.fit = search_.tryLaw(one.model, *law, progress);
-        if (!one.fit.usable() || !isAtWork(one.model.components.back()))
+    std::optional<Model> best;
+    FitSummary fit;
+    double least = now_.chiSquaredPerValue;
+    for (std::size_t n = 0; n < laws.size(); ++n) {
+        const auto count = static_cast<double>(laws.size()), done = static_cast<double>(n);
+        Model with;
+        const auto summary = search_.tryLaw(with, *laws[n], progress.part(done / count, (done + 1.0) / count));
+        if (!summary.usable() || !isAtWork(with.components.back()))
             continue;
-        one.left = search_.left(one.model);
-        if (const double gain = search_.lost(now_, one.left); gain > most) {
-            most = gain;
-            best = std::move(one);
+        const auto then = search_.left(with);
+        if (search_.lost(now_, then) > convincing && then.chiSquaredPerValue < least) {
+            least = then.chiSquaredPerValue;
+            best = std::move(with);
+            fit = summary;
         }
     }
     if (!best)
         return false;
-    takeIn(std::move(best->model), best->fit, best->left);
-    strange_.clear();
+    strange_ = search_.takeOutImplausible(*best);
+    takeIn(std::move(*best), fit);
+    lookAgain();
     return true;
 }
 

@@ -10,13 +10,6 @@
 
 namespace excursion {
 
-/// Where a round of a search has ended.
-struct Waypoint {
-    std::set<std::string> effects;
-    double chiSquaredPerValue = 0.0;
-};
-using Waypoints = std::vector<Waypoint>;
-
 /// A model that effects were put into, what the last of them was fitted to, and how it came there.
 struct Grown {
     Model model;
@@ -24,8 +17,9 @@ struct Grown {
     Waypoints path;
 };
 
-/// Puts the effects that the record shows into a base, by rounds of voting. None where that comes to where another
-/// search has been.
+/// Puts the effects that the record shows into a base: by rounds of voting, beside which the law comes in that alone
+/// would leave least, and by trial of one law after the other where votes lead no further. None where that comes to
+/// where another search has been.
 /// @param known  the path of the other search
 std::optional<Grown> grown(const Model& base, const Record&, WholeSearch&, const Waypoints& known,
                            const Progress& = {});

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace excursion {
@@ -142,10 +143,9 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     const double rows = std::max(1.0, sums.validation.rows);
     result.chiSquaredPerValue = sums.validation.cost / rows;
 
-    std::vector<Eigen::Index> together = own;
+    std::map<const Effect*, std::vector<Eigen::Index>> strengths;  // in the start that promises most
     for (const auto& entry : entries) {
         const auto positions = strengthPlaces(augmented, entry.component, active);
-        together.insert(together.end(), positions.begin(), positions.end());
         const auto d = feasibleStep(sums.estimation, augmented, entry.component, own, positions);
         Score score;
         score.effect = entry.model.components.back().effect;
@@ -167,6 +167,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
                                         [&](const Score& s) { return s.effect == score.effect; });
         if (known != result.scores.end() && known->chiSquaredPerValue <= score.chiSquaredPerValue)
             continue;
+        strengths[score.effect] = positions;
         // The model at the end of the step; the trial shortens the step should it be too long.
         score.model = entry.model;
         score.byResponse = entry.byResponse;
@@ -180,19 +181,15 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         else
             result.scores.push_back(std::move(score));
     }
+    std::vector<Eigen::Index> together = own;
+    for (const auto& [effect, places] : strengths)
+        together.insert(together.end(), places.begin(), places.end());
     std::sort(together.begin(), together.end());
     const auto all = gaussNewtonStep(sums.estimation, together);
     if (hasPeriods(record)) {  // a simulation's sensitivities say little of several strong effects at once
-        for (auto& s : result.scores) {
-            std::vector<Eigen::Index> strengths;
-            for (const auto& entry : entries)
-                if (entry.model.components.back().effect == s.effect) {
-                    const auto places = strengthPlaces(augmented, entry.component, active);
-                    strengths.insert(strengths.end(), places.begin(), places.end());
-                }
-            s.vote = voteOn(sums, together, strengths, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size())),
-                            record.noiseKnown);
-        }
+        const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+        for (auto& s : result.scores)
+            s.vote = voteOn(sums, together, strengths.at(s.effect), none, record.noiseKnown);
     }
     for (const auto& channel : sums.byChannel) {
         const double channelRows = std::max(1.0, channel.rows);

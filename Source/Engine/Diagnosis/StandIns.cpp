@@ -87,20 +87,29 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
     chooseResiduals(model);
     auto now = left(model);
     const auto ids = model.effectIds();
-    const auto isSuspect = [&](const std::string& id) { return !base_.has(id) && mayStandIn(model, id); };
-    if (now.chiSquaredPerValue < clean && std::none_of(ids.begin(), ids.end(), isSuspect))
+    const auto seen = seenIn(record_);
+    const bool feltIsSeen = std::any_of(seen.channels.begin(), seen.channels.end(), [](Quantity q) {
+        return q != Quantity::pressure && q != Quantity::voltage && q != Quantity::force;
+    });
+    // a felt resonance that could be one that is only heard, where what is felt would show
+    const auto isSuspect = [&](const std::string& id) { return feltIsSeen && !base_.has(id) && mayStandIn(model, id); };
+    const auto isOnlyHeard = [&](const Effect* effect) {
+        return effect->linear() && !effect->felt() && !model.has(effect->id()) && whyUnseen(*effect, seen).empty();
+    };
+    if (now.chiSquaredPerValue < clean
+        && (std::none_of(ids.begin(), ids.end(), isSuspect)
+            || std::none_of(catalogue().begin(), catalogue().end(), isOnlyHeard)))
         return false;
     if (auto settled = model; fit(settled, onTrial, progress).usable())  // as what it is compared with
         if (auto then = left(settled); then.chiSquaredPerValue < now.chiSquaredPerValue) {
             model = std::move(settled);
             now = std::move(then);
         }
-    const auto seen = seenIn(record_);
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
     const Progress stoppable = progress.part(0.0, 0.0);
-    // dB that the model leaves more than the other, less what that has to bring: nothing where it claims less, as what
-    // is only heard need not be a part that the cone feels
+    // dB by which the other leaves less, minus what an exchange has to bring. What is only heard claims less than what
+    // is felt, so it need bring nothing.
     const auto gainOf = [&](Model& other, bool claimsLess) {
         constexpr double none = 0.0;
         if (!findNewest(other, still) || !newestIsPlausible(other)
@@ -121,7 +130,7 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
         std::optional<Model> best;
         double most = 0.0;
         for (const auto* effect : catalogue()) {
-            const bool claimsLess = suspect && !effect->felt();
+            const bool claimsLess = suspect && isOnlyHeard(effect);
             if (!effect->linear() || model.has(effect->id()) || (isClean && !claimsLess)
                 || !whyUnseen(*effect, seen).empty())
                 continue;

@@ -135,8 +135,10 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
             return false;
+        constexpr double doubtful = 1.0;  // dB, of what may only be another effect's wrong shape
         const bool completes = whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
-        return unknownLeft ? one.vote.standsAlone() : completes || (one.vote.backs() && !one.suspect);
+        return unknownLeft ? one.vote.standsAlone()
+                           : completes || (one.vote.backs() && !(one.suspect && one.vote.uniqueDb < doubtful));
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
     for (int n = 0; n <= rounds; ++n) {

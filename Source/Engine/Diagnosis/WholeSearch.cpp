@@ -29,7 +29,33 @@ std::set<std::string> implausible(const Model& model)
     return found;
 }
 
+/// Adds the model with a law at rest in each of its shapes to start from but the one that it has.
+void addOtherStarts(std::vector<Model>& others, const Model& model, const std::string& law)
+{
+    const auto& now = *model.find(law);
+    for (const auto& start : now.effect->starts(now.operatingRange)) {
+        auto there = now;
+        bool same = true;
+        for (std::size_t k = 0; k < there.parameters.size(); ++k) {
+            auto& p = there.parameters[k];
+            same = same && (p.strength || p.value == start[k]);
+            p.value = start[k];
+        }
+        if (same)
+            continue;
+        others.push_back(model);
+        *std::find_if(others.back().components.begin(), others.back().components.end(),
+                      [&](const Component& c) { return c.effect == there.effect; }) = std::move(there);
+    }
+}
+
 }  // namespace
+
+bool isNear(const Waypoint& one, const Waypoint& other, double share)
+{
+    return one.effects == other.effects
+           && std::abs(one.chiSquaredPerValue - other.chiSquaredPerValue) < share * other.chiSquaredPerValue;
+}
 
 bool mayStandIn(const Model& model, const std::string& effect)
 {
@@ -80,16 +106,49 @@ FitSummary WholeSearch::fitExactly(Model& model) const
     return excursion::fit(model, record_, sections_, options, {});
 }
 
-FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progress& progress) const
+FitSummary WholeSearch::fitFromEachStart(Model& model, const std::set<std::string>& newcomers,
+                                         const Progress& progress) const
 {
-    return tryFit(model, proposed, record_, sections_, within(brief), progress);
+    std::vector<Model> others;
+    for (const auto& id : newcomers)
+        if (!effectNamed(id).linear())
+            addOtherStarts(others, model, id);
+    auto best = model;
+    const auto part = [&, count = 1.0 + static_cast<double>(others.size())](double n) {
+        return progress.part(n / count, (n + 1.0) / count);
+    };
+    auto summary = fit(best, part(0.0));
+    for (std::size_t n = 0; n < others.size(); ++n)
+        if (const auto run = fit(others[n], part(static_cast<double>(n) + 1.0));
+            run.usable() && (!summary.usable() || left(others[n]).cost < left(best).cost)) {
+            best = std::move(others[n]);
+            summary = run;
+        }
+    model = std::move(best);
+    return summary;
 }
 
-bool WholeSearch::isFirstTrialOf(const Model& model)
+FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progress& progress) const
 {
-    auto ids = model.effectIds();
-    std::sort(ids.begin(), ids.end());
-    return triedBeside_.insert(std::move(ids)).second;
+    auto summary = tryFit(model, proposed, record_, sections_, within(brief), progress);
+    std::vector<Model> others;
+    addOtherStarts(others, proposed.model, proposed.effect->id());
+    for (auto& other : others)
+        if (const auto run = fit(other, brief, progress.part(1.0, 1.0));
+            run.usable() && (!summary.usable() || left(other).cost < left(model).cost)) {
+            model = std::move(other);
+            summary = run;
+        }
+    return summary;
+}
+
+bool WholeSearch::beginTrialsAt(const Waypoint& place)
+{
+    constexpr double same = 0.1;
+    if (std::any_of(trials_.begin(), trials_.end(), [&](const Waypoint& one) { return isNear(one, place, same); }))
+        return false;
+    trials_.push_back(place);
+    return true;
 }
 
 void WholeSearch::findPartsAnew(Model& model) const
@@ -248,12 +307,12 @@ bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(
             if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                 continue;
             const auto then = left(leaner), now = left(model);
-            if (keeps({votedBy(effect, removal.vote, then, now, now.areNoise()),
-                       {},
-                       then.chiSquaredPerValue / now.chiSquaredPerValue,
-                       then.areNoise(),
-                       !implausible(model).contains(effect),
-                       removal.suspect}))
+            if (keeps({.vote = votedBy(effect, removal.vote, then, now, now.areNoise()),
+                       .leaner = {},
+                       .times = then.chiSquaredPerValue / now.chiSquaredPerValue,
+                       .staysNoise = then.areNoise(),
+                       .plausible = !implausible(model).contains(effect),
+                       .suspect = removal.suspect}))
                 continue;
         }
         model = std::move(leaner);

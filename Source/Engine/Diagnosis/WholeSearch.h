@@ -52,6 +52,16 @@ struct Removal {
     bool suspect = false;     ///< see mayStandIn()
 };
 
+/// Where a round of a search has ended.
+struct Waypoint {
+    std::set<std::string> effects;
+    double chiSquaredPerValue = 0.0;
+};
+using Waypoints = std::vector<Waypoint>;
+
+/// Whether two places have the same effects, and leave the same but for this share.
+bool isNear(const Waypoint&, const Waypoint&, double share);
+
 /// Whether an effect is made of resonances that the cone feels. They can be whatever a box or a suspension in a wrong
 /// shape lacks, however much they are missed then.
 bool mayStandIn(const Model&, const std::string& effect);
@@ -74,10 +84,14 @@ public:
     double lost(const Left& more, const Left& less) const;
 
     FitSummary fit(Model&, const Progress& = {}) const;
-    /// The model of a score with its newest effect, which is a law, fitted briefly.
-    FitSummary tryLaw(Model&, const Score&, const Progress& = {}) const;
-    /// Whether laws have not been tried one by one yet beside just these effects.
-    bool isFirstTrialOf(const Model&);
+    /// From each start of the laws among the newcomers; stays with what leaves least, as what derivatives promise of a
+    /// start need not come true.
+    FitSummary fitFromEachStart(Model&, const std::set<std::string>& newcomers, const Progress& = {}) const;
+    /// @param model  the result: that of the score, whose newest effect is a law, fitted briefly from each of its
+    /// starts
+    FitSummary tryLaw(Model& model, const Score&, const Progress& = {}) const;
+    /// Whether laws have not been tried one by one yet at such a place; from now on they have.
+    bool beginTrialsAt(const Waypoint&);
     void findPartsAnew(Model&) const;  ///< see FindAnew.h
     void raiseDegrees(Model&) const;   ///< of laws, as far as it pays
 
@@ -146,7 +160,7 @@ private:
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions options_;
-    std::set<std::vector<std::string>> triedBeside_;  // sorted effects
+    Waypoints trials_;
 };
 
 }  // namespace excursion

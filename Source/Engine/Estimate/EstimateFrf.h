@@ -12,9 +12,8 @@ namespace excursion {
 ///
 /// @param level  0 the quietest; below 0: the loudest
 /// @param record  how a take without periods is cut
-/// @throws Error (usage) for a level that the take does not have or a record that cannot be cut so, (data) for a
-/// channel
-///         that is missing
+/// @throws Error (usage) for a level that the take does not have, or a record that cannot be cut so; (data) when a
+///         channel is missing
 Frf estimateFrf(const Measurement&, Quantity output, Quantity input, int level, const WelchOptions& record = {});
 
 }  // namespace excursion

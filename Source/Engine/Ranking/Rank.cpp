@@ -149,7 +149,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
             output = &channel;
     if (!output || output == &input)
         throw Error(Error::Kind::data, "The take has no such channel beside its input.");
-    const int level = take.hasPeriods() ? take.excitation->levelOf(options.level) : -1;
+    const int level = take.levelOf(options.level);
 
     progress.at(0.0, "the linear model");
     const auto response = frequencyDataOf(responseOf(given, {std::string(name(output->quantity)), {}, level}).frf);

@@ -59,6 +59,15 @@ int Excitation::levelOf(int wanted) const
     return wanted >= 0 ? wanted : loudest();
 }
 
+int Measurement::levelOf(int wanted) const
+{
+    if (hasPeriods())
+        return excitation->levelOf(wanted);
+    if (wanted > 0)
+        throw Error(Error::Kind::usage, "The take has 1 level, numbered from 0.");
+    return -1;
+}
+
 const Channel* Measurement::find(Quantity quantity) const { return findIn(channels, quantity); }
 
 const Channel& Measurement::channel(Quantity quantity) const

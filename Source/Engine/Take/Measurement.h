@@ -73,6 +73,9 @@ struct Measurement {
     std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }
     /// whether it repeats periods whose excited lines are known
     bool hasPeriods() const { return excitation && !excitation->lines.empty(); }
+    /// Excitation::levelOf() of a take with periods. One without has a single level: -1 for it, and an Error (usage)
+    /// for others.
+    int levelOf(int wanted) const;
     const Channel* find(Quantity) const;     ///< nullptr when absent
     const Channel& channel(Quantity) const;  ///< throws Error (data) when absent
     /// the voltage, or the force of a mechanical-only driver; throws Error (data)

@@ -52,11 +52,14 @@ public:
                 {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25}};
     }
 
-    /// Slips from the first tenth of the way on, or hardly at all: derivatives at one tell nothing of the other.
+    /// It slips from the first tenth of the way on, or hardly at all: what derivatives show at one start tells nothing
+    /// of the other.
     std::vector<std::vector<double>> starts(const OperatingRange& e) const override
     {
-        const double X = e.displacement;
-        return {{0.0, 0.08 * X, 2.0, 0.0, 0.0}, {0.0, 0.6 * X, 2.0, 0.0, 0.0}};
+        auto all = Effect::starts(e);
+        all.push_back(all.front());
+        all.back()[1] = 0.6 * e.displacement;
+        return all;
     }
 
     int memorySize(const OperatingRange&) const override { return elements; }
