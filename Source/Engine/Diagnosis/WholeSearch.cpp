@@ -4,7 +4,6 @@
 #include "Engine/Diagnosis/FindAnew.h"
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
-#include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 
@@ -13,49 +12,11 @@
 namespace excursion {
 namespace {
 
-constexpr LeastSquaresOptions search {12, 1e-3}, brief {5, 1e-2}, glance {1, 1e-1};
-constexpr double barelyMissed = 6.0;   // dB
 constexpr double sorelyMissed = 15.0;  // dB more that are left: no fit would make that good
 
 double inDecibels(double ratio) { return 10.0 * std::log10(ratio); }
 
-/// The effects of a model whose parameters are no longer what their names say.
-std::set<std::string> implausible(const Model& model)
-{
-    std::set<std::string> found;
-    for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (!isPlausible(model, k))
-            found.insert(model.components[k].effect->id());
-    return found;
-}
-
-/// Adds the model with a law at rest in each of its shapes to start from but the one that it has.
-void addOtherStarts(std::vector<Model>& others, const Model& model, const std::string& law)
-{
-    const auto& now = *model.find(law);
-    for (const auto& start : now.effect->starts(now.operatingRange)) {
-        auto there = now;
-        bool same = true;
-        for (std::size_t k = 0; k < there.parameters.size(); ++k) {
-            auto& p = there.parameters[k];
-            same = same && (p.strength || p.value == start[k]);
-            p.value = start[k];
-        }
-        if (same)
-            continue;
-        others.push_back(model);
-        *std::find_if(others.back().components.begin(), others.back().components.end(),
-                      [&](const Component& c) { return c.effect == there.effect; }) = std::move(there);
-    }
-}
-
 }  // namespace
-
-bool isNear(const Waypoint& one, const Waypoint& other, double share)
-{
-    return one.effects == other.effects
-           && std::abs(one.chiSquaredPerValue - other.chiSquaredPerValue) < share * other.chiSquaredPerValue;
-}
 
 bool mayStandIn(const Model& model, const std::string& effect)
 {
@@ -83,7 +44,7 @@ FitOptions WholeSearch::within(const LeastSquaresOptions& steps) const
     return options;
 }
 
-FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { return fit(model, search, progress); }
+FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { return fit(model, full, progress); }
 
 /// With laws that are fed alone, as they are quick.
 FitSummary WholeSearch::glanceAt(Model& model) const
@@ -104,51 +65,6 @@ FitSummary WholeSearch::fitExactly(Model& model) const
     auto options = within(brief);
     options.fedGradient = false;
     return excursion::fit(model, record_, sections_, options, {});
-}
-
-FitSummary WholeSearch::fitFromEachStart(Model& model, const std::set<std::string>& newcomers,
-                                         const Progress& progress) const
-{
-    std::vector<Model> others;
-    for (const auto& id : newcomers)
-        if (!effectNamed(id).linear())
-            addOtherStarts(others, model, id);
-    auto best = model;
-    const auto part = [&, count = 1.0 + static_cast<double>(others.size())](double n) {
-        return progress.part(n / count, (n + 1.0) / count);
-    };
-    auto summary = fit(best, part(0.0));
-    for (std::size_t n = 0; n < others.size(); ++n)
-        if (const auto run = fit(others[n], part(static_cast<double>(n) + 1.0));
-            run.usable() && (!summary.usable() || left(others[n]).cost < left(best).cost)) {
-            best = std::move(others[n]);
-            summary = run;
-        }
-    model = std::move(best);
-    return summary;
-}
-
-FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progress& progress) const
-{
-    auto summary = tryFit(model, proposed, record_, sections_, within(brief), progress);
-    std::vector<Model> others;
-    addOtherStarts(others, proposed.model, proposed.effect->id());
-    for (auto& other : others)
-        if (const auto run = fit(other, brief, progress.part(1.0, 1.0));
-            run.usable() && (!summary.usable() || left(other).cost < left(model).cost)) {
-            model = std::move(other);
-            summary = run;
-        }
-    return summary;
-}
-
-bool WholeSearch::beginTrialsAt(const Waypoint& place)
-{
-    constexpr double same = 0.1;
-    if (std::any_of(trials_.begin(), trials_.end(), [&](const Waypoint& one) { return isNear(one, place, same); }))
-        return false;
-    trials_.push_back(place);
-    return true;
 }
 
 void WholeSearch::findPartsAnew(Model& model) const
@@ -268,7 +184,7 @@ WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough,
     Removals tried;
     const auto chosen = left(model);
     const Asked now {chosen, test_.played ? left(model, false) : chosen};
-    const auto strange = implausible(model);
+    const auto strange = implausibleIn(model);
     std::optional<LinearResponses> still;
     for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
         if (base_.has(effect))
@@ -311,7 +227,7 @@ bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(
                        .leaner = {},
                        .times = then.chiSquaredPerValue / now.chiSquaredPerValue,
                        .staysNoise = then.areNoise(),
-                       .plausible = !implausible(model).contains(effect),
+                       .plausible = !implausibleIn(model).contains(effect),
                        .suspect = removal.suspect}))
                 continue;
         }
@@ -319,100 +235,6 @@ bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(
         any = true;
     }
     return any;
-}
-
-bool WholeSearch::restImplausibleParts(Model& model) const
-{
-    bool any = false;
-    for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (!base_.has(model.components[k].effect->id()))
-            any |= excursion::restImplausibleParts(model, k);
-    return any;
-}
-
-std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
-{
-    auto leaner = model;
-    if (restImplausibleParts(leaner)) {
-        if (!fit(leaner, brief).usable())
-            return {};
-        model = leaner;
-    }
-    const auto strange = strangeIn(leaner);
-    if (strange.empty())
-        return {};
-    if (left(leaner).isNoise())
-        return takeOutOneByOne(model);
-    for (const auto& effect : strange)
-        leaner = withoutEffect(leaner, effect);
-    if (!fit(leaner, brief).usable())
-        return {};
-    model = std::move(leaner);
-    return strange;
-}
-
-std::set<std::string> WholeSearch::takeOutOneByOne(Model& model) const
-{
-    auto leaner = model;
-    std::set<std::string> gone, anew;
-    for (auto strange = strangeIn(leaner); !strange.empty(); strange = strangeIn(leaner)) {
-        auto next = withoutOneOf(strange, leaner);
-        if (!next || !fit(next->model, brief).usable())
-            break;
-        if (anew.insert(next->effect).second && bringBack(leaner, next->effect, left(next->model)))
-            continue;
-        gone.insert(next->effect);
-        leaner = std::move(next->model);
-    }
-    if (!anew.empty())
-        model = std::move(leaner);
-    return gone;
-}
-
-/// Where others have bent a linear effect far away no small step leads back.
-bool WholeSearch::bringBack(Model& model, const std::string& effect, const Left& without) const
-{
-    return effectNamed(effect).linear() && lost(without, left(model)) > barelyMissed
-           && findAnew(
-               model, LinearResponses(withoutLaws(model, record_, options_.threads)),
-               [&](const Component& component) { return component.effect->id() == effect; },
-               [&](Model& anew) {
-                   return fit(anew, brief).usable() && !strangeIn(anew).contains(effect)
-                          && lost(without, left(anew)) > hardlyNeeded;
-               });
-}
-
-std::set<std::string> WholeSearch::strangeIn(const Model& model) const
-{
-    auto strange = implausible(model);
-    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
-    return strange;
-}
-
-/// Whether an effect is strange that a model had not before.
-bool WholeSearch::hasBecomeStrange(const Model& model, const Model& before) const
-{
-    const auto strange = strangeIn(model);
-    return std::any_of(strange.begin(), strange.end(), [&](const std::string& effect) { return !before.has(effect); });
-}
-
-std::optional<WholeSearch::Leaner> WholeSearch::withoutOneOf(const std::set<std::string>& effects,
-                                                             const Model& model) const
-{
-    if (effects.size() == 1)
-        return Leaner {*effects.begin(), withoutEffect(model, *effects.begin())};
-    std::optional<Leaner> best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& effect : effects) {
-        auto leaner = withoutEffect(model, effect);
-        if (!fit(leaner, glance).usable())
-            continue;
-        if (const double then = left(leaner).chiSquaredPerValue; then < least) {
-            least = then;
-            best = {effect, std::move(leaner)};
-        }
-    }
-    return best;
 }
 
 /// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from which

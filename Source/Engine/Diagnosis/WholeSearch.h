@@ -66,6 +66,9 @@ bool isNear(const Waypoint&, const Waypoint&, double share);
 /// shape lacks, however much they are missed then.
 bool mayStandIn(const Model&, const std::string& effect);
 
+/// The effects of a model whose parameters are no longer what their names say.
+std::set<std::string> implausibleIn(const Model&);
+
 /// The steps of a search for all effects of a loudspeaker at once: they judge by two realizations a level, and by what
 /// a simulation leaves where that is less than what fed laws leave. A removal that fed laws miss much is not played.
 class WholeSearch {
@@ -131,6 +134,9 @@ public:
     bool exchangeStandIns(Model&, const Progress& = {});
 
 private:
+    static constexpr LeastSquaresOptions full {12, 1e-3}, brief {5, 1e-2}, glance {1, 1e-1};
+    static constexpr double barelyMissed = 6.0;  // dB
+
     /// What a model leaves by the residuals that were chosen, and by those of fed laws.
     struct Asked {
         Left chosen, fed;
@@ -143,6 +149,8 @@ private:
     FitOptions within(const LeastSquaresOptions&) const;
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
+    FitSummary orBetter(Model&, FitSummary, std::vector<Model> others, const LeastSquaresOptions&,
+                        const Progress&) const;
     FitSummary glanceAt(Model&) const;
     Left left(const Model&, bool played) const;
     std::set<std::string> strangeIn(const Model&) const;
