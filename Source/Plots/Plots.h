@@ -23,8 +23,9 @@ void overlayErrors(Plot&, const Ladder&, std::size_t shown, std::size_t channel,
 /// What the balances of force and voltage lack against motion; `after` may be null.
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after);
 
-/// Bl(x), K(x), ... with their 95 % bands.
-std::vector<Plot> lawPlots(const Model&);
+/// What each effect of a model is by itself, with its 95 % band: Bl(x), K(x), ..., a hysteresis loop, the drift of Re, the
+/// lateness of the sound. An effect that only changes a response has no picture of its own.
+std::vector<Plot> effectPlots(const Model&);
 
 /// How a channel's error fell from rung to rung.
 Plot fallPlot(const Ladder&, Quantity);

@@ -18,7 +18,14 @@ const ResidualCurve* match(const Comparison& comparison, const ResidualCurve& li
 
 Series series(const ResidualCurve& curve, const char* title, Role role, double across, double up)
 {
-    Series s {title, role, scaled(curve.argument, across), scaled(curve.mean, up), {}, {}, Series::Shape::line, 0};
+    Series s {title,
+              role,
+              scaled(curve.argument, across),
+              scaled(curve.mean, up),
+              {},
+              {},
+              curve.against == "t" ? Series::Shape::pointsAndLine : Series::Shape::line,
+              0};
     for (std::size_t k = 0; k < curve.scatter.size() && k < curve.mean.size(); ++k) {
         s.lower.push_back((curve.mean[k] - curve.scatter[k]) * up);
         s.upper.push_back((curve.mean[k] + curve.scatter[k]) * up);

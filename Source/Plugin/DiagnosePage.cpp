@@ -18,12 +18,12 @@ look::Tone toneOf(Verdict verdict)
                                                : look::Tone::warning;
 }
 
-/// The law as the trial found it; an effect without a law is seen in the frequency response.
+/// The effect as the trial found it, or the frequency response that it changes.
 Plot evidenceOf(const RankedEffect& ranked, const Findings& findings)
 {
     if (ranked.model.components.empty())
         return {};
-    for (auto& plot : lawPlots(ranked.model))
+    for (auto& plot : effectPlots(ranked.model))
         if (plot.title == effectTitle(ranked.effect)) {
             plot.title += ", as the trial found it";
             return plot;

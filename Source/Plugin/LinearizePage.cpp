@@ -127,7 +127,7 @@ void LinearizePage::showDriver(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
                   juce::dontSendNotification);
-    auto plots = lawPlots(model);
+    auto plots = effectPlots(model);
     for (auto& plot : plots)
         plot.key = false;
     laws_.show(std::move(plots));

@@ -13,7 +13,7 @@ namespace excursion {
 void addVerdict(Page&, const LadderFile&);    ///< the answer and what it was got from
 void addProblems(Page&, const LadderFile&);   ///< what is wrong with the take
 void addRungs(Page&, const LadderFile&);      ///< how the error fell
-void addLaws(Page&, const LadderFile&);       ///< Bl(x), K(x), ... with their bands
+void addEffects(Page&, const LadderFile&);    ///< Bl(x), K(x), hysteresis loops, ... with their bands
 void addWhatIf(Page&, const LadderFile&);     ///< which effect makes which distortion; limits of the stroke
 void addResponses(Page&, const LadderFile&);  ///< impedance and other frequency responses
 void addSpectra(Page&, const LadderFile&);    ///< per level and channel

@@ -13,7 +13,7 @@ std::string reportHtml(const LadderFile& file)
     addProblems(page, file);
     if (!file.ladder.rungs.empty()) {
         addRungs(page, file);
-        addLaws(page, file);
+        addEffects(page, file);
         addWhatIf(page, file);
         addResponses(page, file);
         addSpectra(page, file);

@@ -17,7 +17,8 @@ void addResiduals(Page& page, const LadderFile& file)
     page.section("Missing force and voltage");
     const std::string how =
         "The line is the mean of what the model's force and voltage balance lacks at the loudest level, the shade its "
-        "scatter: a missing law shows as a curve, and lies flat once it is found.";
+        "scatter: a missing law shows as a curve, and lies flat once it is found. Against the time there is a point "
+        "for each section of the take, with its standard error: what drifts shows there.";
     if (rungs.size() == 1)
         page.figures(residualPlots(rungs.front().comparison, nullptr), 3, how);
     for (std::size_t k = 1; k < rungs.size(); ++k) {

@@ -125,6 +125,23 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
     return spectrum;
 }
 
+/// Those of every section, of which some are there.
+std::vector<SectionFit> fitsOfAll(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                  const std::vector<SectionFit>& fits, const OutputErrorOptions& options)
+{
+    std::vector<SectionFit> all(record.sections.size());
+    std::vector<std::size_t> others;
+    for (std::size_t n = 0; n < all.size(); ++n)
+        if (const auto found = std::find(sections.begin(), sections.end(), n); found != sections.end())
+            all[n] = fits[static_cast<std::size_t>(found - sections.begin())];
+        else
+            others.push_back(n);
+    auto more = outputError(model, record, others, {}, options);
+    for (std::size_t n = 0; n < others.size(); ++n)
+        all[others[n]] = std::move(more[n]);
+    return all;
+}
+
 }  // namespace
 
 std::string inWords(const ErrorKinds& kinds)
@@ -217,8 +234,12 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
         result.channels.push_back(std::move(channel));
     }
     result.chiSquaredPerValue = cost / std::max(1.0, rows);
-    if (options.spectra)
+    if (options.spectra) {
         result.residuals = residualCurves(model, record, sections, fits);
+        if (!result.residuals.empty())
+            for (auto& curve : driftCurves(model, record, fitsOfAll(model, record, sections, fits, run)))
+                result.residuals.push_back(std::move(curve));
+    }
     progress.at(1.0, "compared");
     return result;
 }

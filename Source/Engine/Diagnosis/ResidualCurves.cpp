@@ -12,24 +12,26 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace excursion {
 namespace {
 
 using Complex = std::complex<double>;
 
-/// Error of displacement per line from the most direct channel; empty when there is none.
-std::vector<Complex> displacementError(const Record& record, const Section& section, const SectionFit& fit)
+/// The displacement per line that spectra of all channels tell most directly; empty if none does.
+std::vector<Complex> displacementOf(const Record& record, const Section& section,
+                                    const std::vector<std::vector<Complex>>& channels)
 {
     int order = 0;
     for (const auto quantity : {Quantity::displacement, Quantity::velocity, Quantity::acceleration}) {
         if (const auto c = record.channelIndex(quantity)) {
-            std::vector<Complex> error(section.measured[*c].size());
-            for (std::size_t k = 1; k < error.size(); ++k) {
+            std::vector<Complex> displacement(channels[*c].size());
+            for (std::size_t k = 1; k < displacement.size(); ++k) {
                 const Complex s(0.0, 2.0 * std::numbers::pi * record.frequency(section, k));
-                error[k] = (section.measured[*c][k] - fit.predicted[*c][k]) / std::pow(s, order);
+                displacement[k] = channels[*c][k] / std::pow(s, order);
             }
-            return error;
+            return displacement;
         }
         ++order;
     }
@@ -69,6 +71,60 @@ private:
     Eigen::Index n_;
 };
 
+/// What the two balances lack in a section, as spectra of its window.
+struct Lack {
+    std::vector<Complex> force, voltage;  ///< N, V; zero outside the band
+};
+
+/// Finds what a model lacks from the errors of its simulation.
+class Lacking {
+public:
+    Lacking(const Model& model, const Record& record)
+        : record_(record), repair_(model), mass_(model.baseParameter("m").value), electrical_(model.electrical())
+    {
+    }
+
+    /// Whether the channels tell the errors of displacement, and of current where there is a coil.
+    bool isTold() const
+    {
+        const bool moves = record_.channelIndex(Quantity::displacement) || record_.channelIndex(Quantity::velocity)
+                           || record_.channelIndex(Quantity::acceleration);
+        return moves && (!electrical_ || record_.channelIndex(Quantity::current));
+    }
+
+    Lack in(const Section& section, const SectionFit& fit) const
+    {
+        auto error = section.measured;
+        for (std::size_t c = 0; c < error.size(); ++c)
+            for (std::size_t k = 0; k < error[c].size(); ++k)
+                error[c][k] -= fit.predicted[c][k];
+        const auto ex = displacementOf(record_, section, error);
+        const std::size_t lines = section.window / 2 + 1;
+        Lack lack {std::vector<Complex>(lines), std::vector<Complex>(lines)};
+        // Above the band the second derivative of displacement is noise.
+        for (std::size_t k = 1; k < lines; ++k) {
+            const double f = record_.frequency(section, k);
+            if (f < 0.5 * record_.bandLow || f > std::min(1.2 * record_.bandHigh, record_.highFrequency))
+                continue;
+            const Complex s(0.0, 2.0 * std::numbers::pi * f);
+            const auto drives = repair_.at(s, electrical_ ? error[*record_.channelIndex(Quantity::current)][k] : 0.0,
+                                           ex[k]);
+            // Displacement drowns in noise long before the band ends: keep the lines where it stands out.
+            const auto c = record_.channelIndex(Quantity::displacement);
+            if (!c || !record_.noiseKnown || std::abs(section.measured[*c][k]) > 3.0 * section.deviation[*c][k])
+                lack.force[k] = mass_ * drives.acceleration;
+            lack.voltage[k] = drives.voltage;
+        }
+        return lack;
+    }
+
+private:
+    const Record& record_;
+    Repair repair_;
+    double mass_;
+    bool electrical_;
+};
+
 struct Motions {
     std::vector<double> x, v, i, force, voltage, drive;
 };
@@ -98,6 +154,34 @@ void bin(const std::vector<double>& argument, const std::vector<double>& value, 
     }
 }
 
+/// The real number a that a balance lacks by a product with a motion: what it lacks is -a times that.
+struct Factor {
+    double value = 0.0, error = 0.0;  ///< its standard error tells of what is no such product
+};
+
+Factor factorOf(const std::vector<Complex>& motion, const std::vector<Complex>& lack)
+{
+    double product = 0.0, square = 0.0, all = 0.0, rows = 0.0;
+    for (std::size_t k = 0; k < lack.size(); ++k) {
+        if (lack[k] == 0.0)
+            continue;
+        product -= std::real(std::conj(motion[k]) * lack[k]);
+        square += std::norm(motion[k]);
+        all += std::norm(lack[k]);
+        rows += 2.0;
+    }
+    if (!(square > 0.0))
+        return {};
+    return {product / square, std::sqrt(std::max(0.0, all - product * product / square) / (rows * square))};
+}
+
+void add(ResidualCurve& curve, double time, const Factor& factor)
+{
+    curve.argument.push_back(time);
+    curve.mean.push_back(factor.value);
+    curve.scatter.push_back(factor.error);
+}
+
 }  // namespace
 
 std::vector<ResidualCurve> residualCurves(const Model& model, const Record& record,
@@ -106,41 +190,18 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     int loudest = -1;
     for (const auto n : sections)
         loudest = std::max(loudest, record.sections[n].level);
-    const auto currentChannel = record.channelIndex(Quantity::current);
-    const Repair repair(model);
-    const double mass = model.baseParameter("m").value;
+    const Lacking lacking(model, record);
+    if (!lacking.isTold())
+        return {};
     const int substeps = stableSubsteps(model, record.sampleRate);
     const auto leadIn = settlingTime(model, record);
     const auto from = startStates(model, record, sections, leadIn, false, 1);
     Motions motions;
-    bool seesForce = false, seesVoltage = false;
     for (std::size_t n = 0; n < sections.size(); ++n) {
         const auto& section = record.sections[sections[n]];
         if (section.level != loudest)
             continue;
-        const auto ex = displacementError(record, section, fits[n]);
-        if (ex.empty() || (model.electrical() && !currentChannel))
-            return {};
-        seesForce = true;
-        seesVoltage = model.electrical();
-        const std::size_t lines = section.window / 2 + 1;
-        std::vector<Complex> force(lines), voltage(lines);
-        // Above the band the second derivative of displacement is noise.
-        for (std::size_t k = 1; k < lines; ++k) {
-            const double f = record.frequency(section, k);
-            if (f < 0.5 * record.bandLow || f > std::min(1.2 * record.bandHigh, record.highFrequency))
-                continue;
-            const Complex s(0.0, 2.0 * std::numbers::pi * f);
-            const Complex ei = currentChannel && seesVoltage
-                                   ? section.measured[*currentChannel][k] - fits[n].predicted[*currentChannel][k]
-                                   : 0.0;
-            const auto drives = repair.at(s, ei, ex[k]);
-            // Displacement drowns in noise long before the band ends: keep the lines where it stands out.
-            const auto c = record.channelIndex(Quantity::displacement);
-            if (!c || !record.noiseKnown || std::abs(section.measured[*c][k]) > 3.0 * section.deviation[*c][k])
-                force[k] = mass * drives.acceleration;
-            voltage[k] = drives.voltage;
-        }
+        const auto lack = lacking.in(section, fits[n]);
         Trajectory run;
         const auto drive = record.drive(section, leadIn);
         if (!integrate(model, Drive(drive, record.sampleRate, substeps),
@@ -153,8 +214,8 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         append(motions.x, run.displacement);
         append(motions.v, run.velocity);
         append(motions.i, run.current);
-        append(motions.force, inverseFft(force, section.window));
-        append(motions.voltage, inverseFft(voltage, section.window));
+        append(motions.force, inverseFft(lack.force, section.window));
+        append(motions.voltage, inverseFft(lack.voltage, section.window));
     }
     std::vector<ResidualCurve> curves;
     const auto add = [&](const char* residual, const char* unit, const std::vector<double>& value, double driveRms) {
@@ -170,11 +231,45 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         if (model.electrical())
             against("i", "A", motions.i);
     };
-    if (seesForce)
-        add("force", "N", motions.force,
-            model.electrical() ? model.baseParameter("Bl").value * rmsOf(motions.i) : rmsOf(motions.drive));
-    if (seesVoltage)
+    if (motions.x.empty())
+        return {};
+    add("force", "N", motions.force,
+        model.electrical() ? model.baseParameter("Bl").value * rmsOf(motions.i) : rmsOf(motions.drive));
+    if (model.electrical())
         add("voltage", "V", motions.voltage, rmsOf(motions.drive));
+    return curves;
+}
+
+std::vector<ResidualCurve> driftCurves(const Model& model, const Record& record, const std::vector<SectionFit>& fits)
+{
+    constexpr std::size_t fewest = 3;
+    const Lacking lacking(model, record);
+    if (!lacking.isTold() || record.sections.size() < fewest
+        || std::any_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return !fit.finite; }))
+        return {};
+    ResidualCurve stiffness {"stiffness", "N/m", "t", "s", {}, {}, {}, 0.0},
+        resistance {"resistance", "ohm", "t", "s", {}, {}, {}, 0.0};
+    std::vector<std::size_t> order(record.sections.size());
+    std::iota(order.begin(), order.end(), std::size_t {0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return record.sections[a].middle < record.sections[b].middle;
+    });
+    for (const auto n : order) {
+        const auto& section = record.sections[n];
+        const auto lack = lacking.in(section, fits[n]);
+        add(stiffness, section.middle, factorOf(displacementOf(record, section, section.measured), lack.force));
+        if (model.electrical())
+            add(resistance, section.middle,
+                factorOf(section.measured[*record.channelIndex(Quantity::current)], lack.voltage));
+    }
+    std::vector<ResidualCurve> curves;
+    const auto keep = [&](ResidualCurve& curve, const char* base) {
+        curve.db = 20.0 * std::log10(std::max(rmsOf(curve.mean), 1e-300) / model.baseParameter(base).value);
+        curves.push_back(std::move(curve));
+    };
+    keep(stiffness, "K");
+    if (model.electrical())
+        keep(resistance, "Re");
     return curves;
 }
 

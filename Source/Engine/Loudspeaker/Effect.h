@@ -124,6 +124,15 @@ struct LawInfo {
     std::string base;  ///< name of the base parameter it adds to
 };
 
+/// What shows an effect of a model to a person: the picture that an engineer would ask for.
+enum class Evidence {
+    law,       ///< its law, LawInfo
+    response,  ///< the frequency response that it changes
+    loop,      ///< force against displacement, with a memory of where the cone turned
+    drift,     ///< resistance against time while the coil carries a steady current
+    lateness   ///< of the sound, against displacement
+};
+
 /// One of the similar parts that an effect is the sum of, such as a mode of the cone.
 struct Part {
     std::size_t first = 0, count = 0;  ///< its parameters; with its strengths at zero it has no effect
@@ -159,6 +168,9 @@ public:
     virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is only heard or seen
     virtual bool shownBy(Quantity) const { return true; }  ///< a channel of this quantity can show it
     virtual bool undone() const { return felt(); }         ///< predistortion compensates it; else it ignores it
+
+    /// What Portrait.h draws of it.
+    virtual Evidence evidence() const { return law() ? Evidence::law : Evidence::response; }
 
     virtual std::vector<Parameter> parameters(const OperatingRange&) const = 0;
 

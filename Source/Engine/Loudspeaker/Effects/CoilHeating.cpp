@@ -28,6 +28,7 @@ public:
     {
     }
     bool slow() const override { return true; }
+    Evidence evidence() const override { return Evidence::drift; }
     std::string sizedBy() const override { return "Re"; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override

@@ -23,6 +23,7 @@ public:
     {
     }
     bool felt() const override { return false; }
+    Evidence evidence() const override { return Evidence::lateness; }
     bool shownBy(Quantity quantity) const override { return quantity == Quantity::pressure; }
 
     std::vector<Parameter> parameters(const OperatingRange&) const override

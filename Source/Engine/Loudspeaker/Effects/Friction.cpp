@@ -38,6 +38,7 @@ public:
     }
     /// To undo what hysteresis holds the voltage would have to hold it in silence, too.
     bool undone() const override { return false; }
+    Evidence evidence() const override { return Evidence::loop; }
     std::string sizedBy() const override { return "K"; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
