@@ -5,6 +5,7 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Laws.h"
 #include "SeedDriver.h"
+#include "SmallSetup.h"
 
 #include <catch2/catch.hpp>
 
@@ -183,6 +184,20 @@ TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
     auto found = added(ladder);
     std::sort(found.begin(), found.end());
     CHECK(found == std::vector<std::string> {"force-factor", "stiffness"});
+    CHECK(ladder.verdict == Verdict::complete);
+    requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
+TEST_CASE("Friction that slips at once is found, and no damping stands for it", "[improve][slow]")
+{
+    bench::Loudspeaker truth;
+    constexpr double limit = 0.3, reach = 1e-5;  // N; m, less than a hundredth of the way
+    truth.friction = bench::Friction {{{limit / reach, limit}}};
+    auto setup = smallSetup();
+    setup.excitation.levels = {0.5, 2.0};
+    setup.noiseDb = -55.0;
+    const auto ladder = improve(PreparedTake(bench::measure(truth, setup)));
+    CHECK(added(ladder) == std::vector<std::string> {"friction"});
     CHECK(ladder.verdict == Verdict::complete);
     requireAtTheNoise(ladder.rungs.back().comparison);
 }

@@ -155,14 +155,19 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
     if (!hasPeriods(record) || base.diagnosis.verdict == Verdict::complete || (backed < 2 && oneIsKnown))
         return {};
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
-    if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
+    const auto& named = base.diagnosis.ranking;
+    // One effect that is known is added by its own trial.
+    if (whole.votes.empty()
+        || (oneIsKnown && whole.votes.size() == 1 && whole.votes.begin()->first == named.front().effect))
         return {};
     if (whole.silentNoise) {
         useSilentNoise(record);
         base.comparison = compare(base.model, record);
     }
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
-    if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
+    const double reached = oneIsKnown ? named.front().confirmedChiSquaredPerValue
+                                      : base.comparison.chiSquaredPerValue;
+    if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < reached))
         return {};
     return rungs;
 }

@@ -53,13 +53,15 @@ public:
                 {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25}};
     }
 
-    /// It slips from the first tenth of the way on, or hardly at all: what derivatives show at one start tells nothing
-    /// of the other.
+    /// It slips from the first tenth of the way on, at once, or hardly at all: what derivatives show at one start tells
+    /// nothing of the others.
     std::vector<std::vector<double>> starts(const OperatingRange& e) const override
     {
         auto all = Effect::starts(e);
-        all.push_back(all.front());
-        all.back()[1] = 0.6 * e.displacement;
+        for (const double reach : {0.6, 0.01}) {
+            all.push_back(all.front());
+            all.back()[1] = reach * e.displacement;
+        }
         return all;
     }
 
