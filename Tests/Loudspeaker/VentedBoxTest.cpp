@@ -3,6 +3,7 @@
 #include "Bench/Loudspeaker.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/MatchSound.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
@@ -203,4 +204,58 @@ TEST_CASE("A microphone may be far away where the take tells so", "[effects]")
     const auto model = startModel(targets, true, driver);
     CHECK(model.path.parameters[1].value == Approx(delay).epsilon(1e-3));
     CHECK(responseErrorDb(model, targets[2]) < -40.0);
+}
+
+TEST_CASE("A box is found from a base that takes its sound for another one", "[effects]")
+{
+    // Half the band away from the resonance, a base without a port may hear the sound upside down and too late.
+    auto speaker = woofer();
+    bench::VentedBox box;
+    box.stiffness = 0.5 * speaker.K;
+    const double tuning = turn * 45.0;
+    box.mass = box.stiffness / (tuning * tuning);
+    box.resistance = box.mass * tuning / 8.0;
+    speaker.ventedBox = box;
+    const auto targets = shownBy(speaker, {Quantity::current, Quantity::displacement, Quantity::pressure});
+    const auto start = startModel(targets, true, {});
+    for (const auto& [sign, late] : {std::pair {-1.0, 1e-3}, std::pair {1.0, 7e-3}}) {
+        CAPTURE(sign, late);
+        auto model = start;
+        model.path.parameters[0].value *= sign;
+        model.path.parameters[1].value += late;
+        REQUIRE(addByResponse(model, effectNamed("vented-box"), targets).usable());
+        CHECK(responseErrorDb(model, targets.back()) < -40.0);
+        CHECK(model.path.parameters[0].value == Approx(speaker.coneArea).epsilon(0.01));
+        CHECK(std::abs(model.path.parameters[1].value) < 1e-6);
+    }
+}
+
+TEST_CASE("Delay, area and the port's share of a sound are found from anywhere", "[effects]")
+{
+    const auto f = frequencies();
+    for (const double tau : {0.0, 0.4e-3, 21e-3})
+        for (const double area : {0.02, -0.003})
+            for (const double share : {0.0, 0.4, 1.0}) {
+                CAPTURE(tau, area, share);
+                auto truth = boxed({3000.0, 42.0, 0.1, 0.1, 0.05, 0.0});
+                auto& port = truth.components.back().parameters.back();
+                port.value = share;
+                port.free = true;
+                auto& path = truth.path.parameters;
+                path[0].value = area;
+                path[1].value = tau;
+                path[0].free = path[1].free = true;
+                auto model = truth;
+                const auto response = respond(truth, {Quantity::pressure}, f).front();
+                const ResponseTarget sound {Quantity::pressure, false, f, response.value,
+                                            std::vector<double>(f.size(), 1e-3)};
+                model.path.parameters[0].value = 0.01;
+                model.path.parameters[1].value = 3e-3;
+                model.components.back().parameters.back().value = 0.0;
+                matchSound(model, sound);
+                const double step = 0.125 / f.back();  // of its delays
+                CHECK(std::abs(model.path.parameters[1].value - tau) <= 0.51 * step);
+                CHECK(model.path.parameters[0].value == Approx(area).epsilon(0.1));
+                CHECK(model.components.back().parameters.back().value == Approx(share).margin(0.1));
+            }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/MatchSound.h"
 
 #include <Eigen/Cholesky>
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace excursion {
@@ -111,6 +113,25 @@ double worthwhile(double left, const std::vector<ResponseTarget>& targets)
     return std::min(pays / rowsOf(targets), enough) * left;
 }
 
+/// The responses of the sound, and those of what makes it; no sound where either is not there.
+struct Heard {
+    std::optional<ResponseTarget> sound;
+    std::vector<ResponseTarget> motions;
+};
+
+Heard heardApart(const std::vector<ResponseTarget>& targets)
+{
+    Heard heard;
+    for (const auto& target : targets)
+        if (target.quantity == Quantity::pressure)
+            heard.sound = target;
+        else
+            heard.motions.push_back(target);
+    if (heard.motions.empty())
+        heard.sound.reset();
+    return heard;
+}
+
 /// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where
 /// others do.
 SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
@@ -179,13 +200,22 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     constexpr int fewPoints = 10, enoughPoints = 16;  // an octave
     constexpr std::size_t most = 3;
     const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
+    const auto heard = newest.effect->emits() ? heardApart(few) : Heard {};
+    const auto begin = [&](Model trial) {
+        if (heard.sound)  // heard without the effect the sound may have come from another time, or upside down
+            if (auto moved = trial; fitResponse(moved, heard.motions, {10, 1e-3}).usable()) {
+                matchSound(moved, *heard.sound);
+                from(std::move(moved), few, {10, 1e-3});
+            }
+        from(std::move(trial), few, {10, 1e-3});
+    };
     for (const auto& start : newest.effect->starts(newest.operatingRange)) {
         auto trial = model;
         for (std::size_t k = 0; k < start.size(); ++k)
             trial.components.back().parameters[k].value = start[k];
         for (const double resonance : newest.effect->restarts(newest.operatingRange, start))
-            from(withResonance(trial, resonance), few, {10, 1e-3});
-        from(std::move(trial), few, {10, 1e-3});
+            begin(withResonance(trial, resonance));
+        begin(std::move(trial));
     }
     std::stable_sort(ways.begin(), ways.end(), better);
     ways.resize(std::min(ways.size(), most));
