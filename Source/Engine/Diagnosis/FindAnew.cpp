@@ -99,20 +99,17 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     glance.search = {3, 1e-2};
     const bool woken = wakeShapes(model, record, sections, options);
     double now = quickCost(model, record, sections, options);
-    const auto still = withoutLaws(model, record, options.threads);
-    const auto found = [&](const LinearResponses& responses) {
-        return findAnew(
-            model, responses,
-            [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
-            [&](Model& anew) {
-                if (!quickFit(anew, record, sections, glance).usable()
-                    || quickCost(anew, record, sections, options) > now
-                    || !quickFit(anew, record, sections, options).usable())
-                    return false;
-                return falls(now, quickCost(anew, record, sections, options), worthIt);
-            });
-    };
-    return found(LinearResponses::ofAllLevels(still)) || found(LinearResponses(still)) || woken;
+    return findAnew(
+               model, LinearResponses(withoutLaws(model, record, options.threads)),
+               [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
+               [&](Model& anew) {
+                   if (!quickFit(anew, record, sections, glance).usable()
+                       || quickCost(anew, record, sections, options) > now
+                       || !quickFit(anew, record, sections, options).usable())
+                       return false;
+                   return falls(now, quickCost(anew, record, sections, options), worthIt);
+               })
+           || woken;
 }
 
 }  // namespace excursion

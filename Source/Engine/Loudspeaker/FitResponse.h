@@ -26,8 +26,9 @@ struct ResponseTarget {
 ///     G = sum Y conj(U) / sum |U|^2,   deviation from the part of Y that this leaves (noise, distortion, curvature).
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
-/// The responses nearest to those of a linear driver: from the quietest level, or from all levels if that one is lost
-/// in noise.
+/// The responses nearest to those of a linear driver: of each channel from all levels together where that is no other
+/// response than the quietest level's, as far as that one's noise tells, as the louder ones have less noise. From the
+/// quietest level elsewhere, as what distorts does least there; from all if it is lost in noise.
 std::vector<ResponseTarget> linearResponsesOf(const Record&, int pointsPerOctave = 12);
 
 /// Targets of a take that is only a frequency response: the impedance from voltage and current, the other quantities

@@ -124,6 +124,18 @@ void keepRigid(std::vector<ResponseTarget>& targets)
     }
 }
 
+/// Whether two responses, the second of them the better known one, differ no more than by the deviation of the first.
+bool agree(const ResponseTarget& rough, const ResponseTarget& exact)
+{
+    if (rough.quantity != exact.quantity || rough.value.size() != exact.value.size())
+        return false;
+    std::vector<double> apart;
+    for (std::size_t k = 0; k < rough.value.size(); ++k)
+        apart.push_back(std::norm(rough.value[k] - exact.value[k]) / (rough.deviation[k] * rough.deviation[k]));
+    constexpr double chance = 1.5;  // of two lines a cell the half of all ratios is below 1, of more lines below 0.7
+    return medianOf(std::move(apart)) < chance;
+}
+
 }  // namespace
 
 std::vector<ResponseTarget> responsesOf(const Record& record, int level, int pointsPerOctave)
@@ -186,10 +198,16 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
 
 std::vector<ResponseTarget> linearResponsesOf(const Record& record, int pointsPerOctave)
 {
-    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0, pointsPerOctave);
-    if (targets.size() < record.channels.size())
-        targets = responsesOf(record, -1, pointsPerOctave);
-    return targets;
+    auto all = responsesOf(record, -1, pointsPerOctave);
+    if (record.levels.size() < 2)
+        return all;
+    auto quiet = responsesOf(record, 0, pointsPerOctave);
+    if (quiet.size() < record.channels.size())
+        return all;
+    for (std::size_t c = 0; c < quiet.size(); ++c)
+        if (c < all.size() && agree(quiet[c], all[c]))
+            quiet[c] = std::move(all[c]);
+    return quiet;
 }
 
 ResponseTarget thinned(const ResponseTarget& dense, int pointsPerOctave)
