@@ -182,7 +182,9 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         strange_ = {leader->effect->id()};
         return Outcome::again;
     };
-    const auto summary = search_.fitFromEachStart(fuller, tries, progress.part(0.4, 0.8));
+    // What is small shows by derivatives from any start.
+    const auto part = progress.part(0.4, 0.8);
+    const auto summary = near ? search_.fit(fuller, part) : search_.fitFromEachStart(fuller, tries, part);
     if (!summary.usable())
         return leader ? withoutLeader() : Outcome::stuck;
     fuller = withoutThoseAtRest(std::move(fuller), base_);
