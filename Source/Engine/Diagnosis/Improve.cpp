@@ -5,7 +5,10 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
 
+#include <utility>
+
 namespace excursion {
+
 Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Progress& progress)
 {
     Improvement work(take, options, progress.part(0.0, 0.02));
@@ -20,19 +23,23 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
     const bool inTime = take.inTime() != nullptr;
-    // What no effect explains by itself several may explain together.
-    const bool together = !inTime || work.ladder().rungs.back().diagnosis.verdict == Verdict::unknownEffect;
-    const double searched = together ? 0.7 : begun;
-    if (together && work.addTogether(progress.part(begun, searched)))
+    const auto verdict = [&] { return work.ladder().verdict; };
+    // What no effect explains by itself several may explain together: those of a frequency response at once, and where
+    // the last one came in by itself.
+    bool mayBeTogether = !inTime || verdict() == Verdict::unknownEffect;
+    const double searched = mayBeTogether ? 0.7 : begun;
+    if (std::exchange(mayBeTogether, false) && work.addTogether(progress.part(begun, searched)))
         tell();
     // of a rung: none has an effect twice
     const double share = (done - searched) / static_cast<double>(catalogue().size());
-    while (work.ladder().verdict == Verdict::missingEffect) {
+    while (verdict() == Verdict::missingEffect || (mayBeTogether && verdict() == Verdict::unknownEffect)) {
         const double at = searched + share * static_cast<double>(work.ladder().rungs.size() - 1);
         const auto part = progress.part(at, at + share);
-        if (!inTime || !work.addTogether(part.part(0.0, 0.7))) {
+        mayBeTogether = false;
+        if ((!inTime || !work.addTogether(part.part(0.0, 0.7))) && verdict() == Verdict::missingEffect) {
             tell();  // its diagnosis stands
             work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
+            mayBeTogether = inTime;
         }
     }
     tell();

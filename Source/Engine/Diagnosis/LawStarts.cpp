@@ -38,22 +38,22 @@ bool isNear(const Waypoint& one, const Waypoint& other, double share)
            && std::abs(one.chiSquaredPerValue - other.chiSquaredPerValue) < share * other.chiSquaredPerValue;
 }
 
-/// Fits the others and puts the one in place of the model that leaves less. One that does not come near the model in a
-/// brief search has the wrong start.
+/// Fits the others and puts the one in place of the model that leaves clearly less: a little less may be what a wrong
+/// shape takes of what else is missing. One that does not come near the model in a brief search has the wrong start.
 FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<Model> others,
                                  const LeastSquaresOptions& steps, const Progress& progress) const
 {
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
         const auto part = progress.part(done / count, (done + 1.0) / count);
-        constexpr double near = 1.5;
+        constexpr double near = 1.5, clearly = 0.8;
         const auto leaves = [&](double share) {
             return !summary.usable() || left(others[n]).cost < share * left(model).cost;
         };
         auto run = fit(others[n], brief, part.part(0.0, 0.4));
         if (run.usable() && leaves(near))
             run = fit(others[n], steps, part.part(0.4, 1.0));
-        if (run.usable() && leaves(1.0)) {
+        if (run.usable() && leaves(clearly)) {
             model = std::move(others[n]);
             summary = run;
         }

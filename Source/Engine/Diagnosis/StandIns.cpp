@@ -15,7 +15,8 @@ namespace excursion {
 namespace {
 
 constexpr LeastSquaresOptions onTrial {5, 1e-2};
-constexpr double worthIt = 0.98;  // of the mean squared residual
+constexpr double worthIt = 0.98;                       // of the mean squared residual
+constexpr double hardlyMore = 1.01, convincing = 3.0;  // of the mean squared residual; dB of a channel's power
 constexpr double clean = 1.05;    // mean squared residual that leaves another effect nothing to explain
 constexpr double dearer = 1.0;    // dB that more parameters must bring
 constexpr double hopeless = 4.0;  // times what is left with the effect that may stand in: no fit would make that good
@@ -39,9 +40,15 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
 {
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
-    double now = left(model).chiSquaredPerValue;
+    auto now = left(model);
     auto missing = effects;
     std::optional<Model> sure;  // as it was before an effect came in on trust
+    constexpr double never = std::numeric_limits<double>::infinity();
+    // The mean over all lines hardly tells of what lies in a few of them.
+    const auto brings = [&](const Left& then) {
+        return then.chiSquaredPerValue < worthIt * now.chiSquaredPerValue
+               || (then.chiSquaredPerValue < hardlyMore * now.chiSquaredPerValue && lost(now, then) > convincing);
+    };
     while (!missing.empty()) {
         std::vector<Model> with;
         for (const auto* effect : missing)
@@ -51,30 +58,33 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
             found[n] = findNewest(with[n], still);
             return true;
         });
-        std::vector<double> leaves, surely;  // the latter of those that are plausible as they are
+        std::vector<Left> then(with.size());
+        std::vector<double> leaves, surely;  // of those that bring something; the latter of plausible ones alone
         for (std::size_t n = 0; n < with.size(); ++n) {
-            leaves.push_back(found[n] ? left(with[n]).chiSquaredPerValue : std::numeric_limits<double>::infinity());
-            surely.push_back(newestIsPlausible(with[n]) ? leaves[n] : std::numeric_limits<double>::infinity());
+            if (found[n])
+                then[n] = left(with[n]);
+            leaves.push_back(found[n] && brings(then[n]) ? then[n].chiSquaredPerValue : never);
+            surely.push_back(newestIsPlausible(with[n]) ? leaves[n] : never);
         }
         auto best = leastOf(surely);
-        if (!(surely[best] < worthIt * now)) {
+        if (surely[best] == never) {
             // One that is bent by what another effect would explain comes right beside that one.
             best = leastOf(leaves);
-            if (!(leaves[best] < worthIt * now))
+            if (leaves[best] == never)
                 break;
             if (!sure)
                 sure = model;
         }
         std::vector<const Effect*> others;  // that may still bring something
         for (std::size_t n = 0; n < with.size(); ++n)
-            if (n != best && leaves[n] < now)
+            if (n != best && found[n] && then[n].chiSquaredPerValue < now.chiSquaredPerValue)
                 others.push_back(missing[n]);
         if (sure) {  // also what brought nothing beside those before
             others = effects;
             std::erase_if(others, [&](const Effect* effect) { return with[best].has(effect->id()); });
         }
         model = std::move(with[best]);
-        now = leaves[best];
+        now = std::move(then[best]);
         missing = std::move(others);
         if (sure && !hasBecomeStrange(model, *sure))
             sure.reset();
