@@ -52,6 +52,8 @@ def test_a_comparison_and_its_residuals(stiff, stiff_fit):
     np.testing.assert_allclose(line(axes[1], "error"), 20 * np.log10(expected))
     residuals = comparison.plot_residuals()
     assert residuals.shape == (2, 3)
+    assert {curve.residual for curve in comparison.residuals_over_time} == {"stiffness", "resistance"}
+    assert all(len(curve.at) == 4 for curve in comparison.residuals_over_time)
     assert residuals[0, 0].get_ylabel() == "force, mN" and residuals[1, 2].get_xlabel() == "i, A"
 
 

@@ -2,6 +2,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/Portrait.h"
+#include "Engine/Take/Air.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
 
@@ -9,8 +10,6 @@
 
 namespace excursion {
 namespace {
-
-constexpr double speedOfSound = 343.0;  // m/s, at 20 degrees
 
 Series curveOf(const std::string& title, const std::vector<double>& argument, const std::vector<double>& value,
                const std::vector<double>& halfWidth, double across, double up, int dash = 0)
@@ -70,8 +69,8 @@ Plot plotOf(const Portrait& portrait)
                            reference(portrait.name + " cold", curve, curve.y.front(), curve.y.front()));
     if (portrait.evidence == Evidence::lateness) {
         const auto at = [&](double x) { return -x / (across.factor * speedOfSound) * up.factor; };
-        plot.series.insert(plot.series.begin(),
-                           reference("at 343 m/s", curve, at(curve.x.front()), at(curve.x.back())));
+        plot.series.insert(plot.series.begin(), reference("at " + nominal(speedOfSound, "m/s"), curve,
+                                                          at(curve.x.front()), at(curve.x.back())));
     }
     return plot;
 }

@@ -20,11 +20,12 @@ Plot spectrumPlot(const ErrorSpectrum&, const std::string& unit);
 /// differ in their dashes, and the key names the rungs.
 void overlayErrors(Plot&, const Ladder&, std::size_t shown, std::size_t channel, std::size_t level);
 
-/// What the balances of force and voltage lack against motion; `after` may be null.
+/// What the balances of force and voltage lack against motion, and what the sections lack of stiffness and resistance
+/// against the time; `after` may be null.
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after);
 
-/// What each effect of a model is by itself, with its 95 % band: Bl(x), K(x), ..., a hysteresis loop, the drift of Re, the
-/// lateness of the sound. An effect that only changes a response has no picture of its own.
+/// What each effect of a model is by itself, with its 95 % band: Bl(x), K(x), ..., a hysteresis loop, the drift of Re,
+/// the lateness of the sound. An effect that only changes a response has no picture of its own.
 std::vector<Plot> effectPlots(const Model&);
 
 /// How a channel's error fell from rung to rung.

@@ -10,9 +10,10 @@ namespace {
 
 const ResidualCurve* match(const Comparison& comparison, const ResidualCurve& like)
 {
-    for (const auto& curve : comparison.residuals)
-        if (curve.residual == like.residual && curve.against == like.against)
-            return &curve;
+    for (const auto* curves : {&comparison.residuals, &comparison.overTime})
+        for (const auto& curve : *curves)
+            if (curve.residual == like.residual && curve.against == like.against)
+                return &curve;
     return nullptr;
 }
 
@@ -38,7 +39,9 @@ Series series(const ResidualCurve& curve, const char* title, Role role, double a
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after)
 {
     std::vector<Plot> plots;
-    for (const auto& curve : before.residuals) {
+    auto curves = before.residuals;
+    curves.insert(curves.end(), before.overTime.begin(), before.overTime.end());
+    for (const auto& curve : curves) {
         if (curve.argument.empty())
             continue;
         const auto across = displayUnit(largest(curve.argument), curve.againstUnit);

@@ -122,3 +122,16 @@ TEST_CASE("Every effect has something to show", "[portrait]")
         CHECK(portraits(model).size() == (own ? 1 : 0));
     }
 }
+
+TEST_CASE("A hysteresis that slips at once has loops that close at its limit", "[portrait]")
+{
+    const double Fc = 0.3, X = someOperatingRange(1.0).displacement;
+    const auto portrait = only(driverWith("friction", {Fc, 2e-3 * X, 2.0, 0.5, 0.1}));
+    for (const auto& line : portrait.lines) {
+        INFO("to " << line.size);
+        CHECK(std::abs(line.value.front() - line.value.back()) < 1e-3 * Fc);
+        for (const double force : line.value)
+            REQUIRE(std::abs(force) < 1.001 * Fc);
+        CHECK(line.value.front() == Approx(Fc).epsilon(1e-3));  // at rest, moving outward
+    }
+}

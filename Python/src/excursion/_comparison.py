@@ -22,9 +22,9 @@ class ResidualCurve:
     """What the model lacks, as a force or a voltage, sorted by a motion or the current; at the loudest level."""
 
     def __init__(self, found: dict[str, Any]) -> None:
-        self.residual: str = found["residual"]  #: force or voltage
+        self.residual: str = found["residual"]  #: force or voltage; over time stiffness or resistance
         self.unit: str = found["unit"]  #: of ``mean`` and ``scatter``
-        self.against: str = found["against"]  #: x, v or i
+        self.against: str = found["against"]  #: x, v, i or t
         self.against_unit: str = found["againstUnit"]  #: of ``at``
         self.at: Samples = numbers(found["at"])
         self.mean: Samples = numbers(found["mean"])  #: of each bin
@@ -85,6 +85,11 @@ class Comparison(Result):
     def residuals(self) -> list[ResidualCurve]:
         """Residual force and voltage over x, v and i, where the take allows them."""
         return [ResidualCurve(found) for found in self.document.get("residuals") or []]
+
+    @property
+    def residuals_over_time(self) -> list[ResidualCurve]:
+        """Resistance and stiffness that each section of the take lacks, over its time; ``scatter`` is the error."""
+        return [ResidualCurve(found) for found in self.document.get("residualsOverTime") or []]
 
     def plot(self, level: int = -1, figure: Any = None) -> Any:
         """Measured, model, error and noise of each channel over frequency; the matplotlib axes."""

@@ -127,7 +127,8 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
 
 /// Those of every section, of which some are there.
 std::vector<SectionFit> fitsOfAll(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                  const std::vector<SectionFit>& fits, const OutputErrorOptions& options)
+                                  const std::vector<SectionFit>& fits, const OutputErrorOptions& options,
+                                  const Progress& progress)
 {
     std::vector<SectionFit> all(record.sections.size());
     std::vector<std::size_t> others;
@@ -136,7 +137,7 @@ std::vector<SectionFit> fitsOfAll(const Model& model, const Record& record, cons
             all[n] = fits[static_cast<std::size_t>(found - sections.begin())];
         else
             others.push_back(n);
-    auto more = outputError(model, record, others, {}, options);
+    auto more = outputError(model, record, others, {}, options, progress);
     for (std::size_t n = 0; n < others.size(); ++n)
         all[others[n]] = std::move(more[n]);
     return all;
@@ -237,8 +238,8 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
     if (options.spectra) {
         result.residuals = residualCurves(model, record, sections, fits);
         if (!result.residuals.empty())
-            for (auto& curve : driftCurves(model, record, fitsOfAll(model, record, sections, fits, run)))
-                result.residuals.push_back(std::move(curve));
+            result.overTime = curvesOverTime(model, record,
+                                             fitsOfAll(model, record, sections, fits, run, progress.part(1.0, 1.0)));
     }
     progress.at(1.0, "compared");
     return result;

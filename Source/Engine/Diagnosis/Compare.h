@@ -49,7 +49,8 @@ std::string titleOf(const ChannelComparison&);
 struct Comparison {
     std::vector<double> levels;  ///< V rms; a single entry 0 if the take has no levels
     std::vector<ChannelComparison> channels;
-    std::vector<ResidualCurve> residuals;  ///< at the loudest level
+    std::vector<ResidualCurve> residuals;  ///< against motion and current, at the loudest level
+    std::vector<ResidualCurve> overTime;   ///< stiffness and resistance of each section of the take
     double chiSquaredPerValue = 0.0;       ///< over all channels and levels
     bool noiseKnown = false;
     bool validated = false;  ///< on sections that no fit saw

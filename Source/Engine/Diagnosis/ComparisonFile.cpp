@@ -189,6 +189,9 @@ Json toJson(const Comparison& comparison)
     document["residuals"] = Json::array();
     for (const auto& residual : comparison.residuals)
         document["residuals"].push_back(residualJson(residual));
+    document["residualsOverTime"] = Json::array();
+    for (const auto& residual : comparison.overTime)
+        document["residualsOverTime"].push_back(residualJson(residual));
     return document;
 }
 
@@ -204,6 +207,9 @@ Comparison comparisonFromJson(const JsonField& field)
         comparison.channels.push_back(channelFrom(channel));
     for (const auto& residual : field.at("residuals").items())
         comparison.residuals.push_back(residualFrom(residual));
+    if (field.has("residualsOverTime"))  // older documents have none
+        for (const auto& residual : field.at("residualsOverTime").items())
+            comparison.overTime.push_back(residualFrom(residual));
     return comparison;
 }
 

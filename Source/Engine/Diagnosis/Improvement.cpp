@@ -165,8 +165,10 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
         base.comparison = compare(base.model, record);
     }
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
-    const double reached = oneIsKnown ? named.front().confirmedChiSquaredPerValue
-                                      : base.comparison.chiSquaredPerValue;
+    double reached = base.comparison.chiSquaredPerValue;
+    if (oneIsKnown)  // the noise may be another one now
+        if (const auto byItsTrial = tryCompare(named.front().model, record, {0, false}))
+            reached = std::min(reached, byItsTrial->chiSquaredPerValue);
     if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < reached))
         return {};
     return rungs;

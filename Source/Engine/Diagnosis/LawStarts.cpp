@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace excursion {
@@ -46,14 +47,17 @@ FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<M
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
         const auto part = progress.part(done / count, (done + 1.0) / count);
-        constexpr double near = 1.5, clearly = 0.8;
-        const auto leaves = [&](double share) {
-            return !summary.usable() || left(others[n]).cost < share * left(model).cost;
+        constexpr double near = -2.0, clearly = 1.0;  // dB
+        const auto gains = [&] {
+            return summary.usable() ? lost(left(model), left(others[n])) : std::numeric_limits<double>::infinity();
         };
         auto run = fit(others[n], brief, part.part(0.0, 0.4));
-        if (run.usable() && leaves(near))
+        double gain = run.usable() ? gains() : -std::numeric_limits<double>::infinity();
+        if (gain > near && steps.maximumIterations > brief.maximumIterations) {
             run = fit(others[n], steps, part.part(0.4, 1.0));
-        if (run.usable() && leaves(clearly)) {
+            gain = gains();
+        }
+        if (run.usable() && gain > clearly) {
             model = std::move(others[n]);
             summary = run;
         }

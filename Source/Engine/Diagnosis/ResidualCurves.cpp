@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -155,31 +157,35 @@ void bin(const std::vector<double>& argument, const std::vector<double>& value, 
 }
 
 /// The real number a that a balance lacks by a product with a motion: what it lacks is -a times that.
-struct Factor {
-    double value = 0.0, error = 0.0;  ///< its standard error tells of what is no such product
+struct Multiple {
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< where nothing tells it
+    /// its standard error from what is no such product, line by line: high lines scatter far more than low ones
+    double error = std::numeric_limits<double>::quiet_NaN();
 };
 
-Factor factorOf(const std::vector<Complex>& motion, const std::vector<Complex>& lack)
+Multiple multipleOf(const std::vector<Complex>& motion, const std::vector<Complex>& lack)
 {
-    double product = 0.0, square = 0.0, all = 0.0, rows = 0.0;
-    for (std::size_t k = 0; k < lack.size(); ++k) {
-        if (lack[k] == 0.0)
-            continue;
-        product -= std::real(std::conj(motion[k]) * lack[k]);
-        square += std::norm(motion[k]);
-        all += std::norm(lack[k]);
-        rows += 2.0;
-    }
+    const auto along = [&](std::size_t k, Complex of) { return std::real(std::conj(motion[k]) * of); };
+    double product = 0.0, square = 0.0, scatter = 0.0;
+    for (std::size_t k = 0; k < lack.size(); ++k)
+        if (lack[k] != 0.0) {
+            product -= along(k, lack[k]);
+            square += std::norm(motion[k]);
+        }
     if (!(square > 0.0))
         return {};
-    return {product / square, std::sqrt(std::max(0.0, all - product * product / square) / (rows * square))};
+    const double value = product / square;
+    for (std::size_t k = 0; k < lack.size(); ++k)
+        if (lack[k] != 0.0)
+            scatter += std::pow(along(k, lack[k] + value * motion[k]), 2);
+    return {value, std::sqrt(scatter) / square};
 }
 
-void add(ResidualCurve& curve, double time, const Factor& factor)
+void add(ResidualCurve& curve, double time, const Multiple& multiple)
 {
     curve.argument.push_back(time);
-    curve.mean.push_back(factor.value);
-    curve.scatter.push_back(factor.error);
+    curve.mean.push_back(multiple.value);
+    curve.scatter.push_back(multiple.error);
 }
 
 }  // namespace
@@ -240,7 +246,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     return curves;
 }
 
-std::vector<ResidualCurve> driftCurves(const Model& model, const Record& record, const std::vector<SectionFit>& fits)
+std::vector<ResidualCurve> curvesOverTime(const Model& model, const Record& record, const std::vector<SectionFit>& fits)
 {
     constexpr std::size_t fewest = 3;
     const Lacking lacking(model, record);
@@ -257,14 +263,19 @@ std::vector<ResidualCurve> driftCurves(const Model& model, const Record& record,
     for (const auto n : order) {
         const auto& section = record.sections[n];
         const auto lack = lacking.in(section, fits[n]);
-        add(stiffness, section.middle, factorOf(displacementOf(record, section, section.measured), lack.force));
+        add(stiffness, section.middle, multipleOf(displacementOf(record, section, section.measured), lack.force));
         if (model.electrical())
             add(resistance, section.middle,
-                factorOf(section.measured[*record.channelIndex(Quantity::current)], lack.voltage));
+                multipleOf(section.measured[*record.channelIndex(Quantity::current)], lack.voltage));
     }
     std::vector<ResidualCurve> curves;
     const auto keep = [&](ResidualCurve& curve, const char* base) {
-        curve.db = 20.0 * std::log10(std::max(rmsOf(curve.mean), 1e-300) / model.baseParameter(base).value);
+        std::vector<double> known;
+        std::copy_if(curve.mean.begin(), curve.mean.end(), std::back_inserter(known),
+                     [](double value) { return std::isfinite(value); });
+        if (known.empty())
+            return;
+        curve.db = 20.0 * std::log10(std::max(rmsOf(known), 1e-300) / model.baseParameter(base).value);
         curves.push_back(std::move(curve));
     };
     keep(stiffness, "K");

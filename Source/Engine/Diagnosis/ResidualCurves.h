@@ -33,6 +33,6 @@ std::vector<ResidualCurve> residualCurves(const Model&, const Record&, const std
 /// The residual stiffness and resistance of each section against its time in the take: a coil that warms and a
 /// suspension that wanders show there. None where residualCurves() has none, or for fewer than three sections.
 /// @param fits  of all sections of the record, with spectra
-std::vector<ResidualCurve> driftCurves(const Model&, const Record&, const std::vector<SectionFit>& fits);
+std::vector<ResidualCurve> curvesOverTime(const Model&, const Record&, const std::vector<SectionFit>& fits);
 
 }  // namespace excursion

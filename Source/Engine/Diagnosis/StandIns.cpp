@@ -77,7 +77,7 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
         }
         std::vector<const Effect*> others;  // that may still bring something
         for (std::size_t n = 0; n < with.size(); ++n)
-            if (n != best && found[n] && then[n].chiSquaredPerValue < now.chiSquaredPerValue)
+            if (n != best && found[n] && (leaves[n] < never || then[n].chiSquaredPerValue < now.chiSquaredPerValue))
                 others.push_back(missing[n]);
         if (sure) {  // also what brought nothing beside those before
             others = effects;

@@ -87,8 +87,8 @@ public:
     double lost(const Left& more, const Left& less) const;
 
     FitSummary fit(Model&, const Progress& = {}) const;
-    /// From each start of the laws among the newcomers; stays with what leaves least, as what derivatives promise of a
-    /// start need not come true.
+    /// From each start of the laws among the newcomers, as what derivatives promise of a start need not come true;
+    /// leaves the first one where another leaves 1 dB less.
     FitSummary fitFromEachStart(Model&, const std::set<std::string>& newcomers, const Progress& = {}) const;
     /// @param model  the result: that of the score, whose newest effect is a law, fitted briefly from each of its
     /// starts

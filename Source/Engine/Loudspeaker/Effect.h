@@ -169,7 +169,7 @@ public:
     virtual bool shownBy(Quantity) const { return true; }  ///< a channel of this quantity can show it
     virtual bool undone() const { return felt(); }         ///< predistortion compensates it; else it ignores it
 
-    /// What Portrait.h draws of it.
+    /// The picture that shows it: its law (Laws.h), a response, or a portrait (Portrait.h).
     virtual Evidence evidence() const { return law() ? Evidence::law : Evidence::response; }
 
     virtual std::vector<Parameter> parameters(const OperatingRange&) const = 0;

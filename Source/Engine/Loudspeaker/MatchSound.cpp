@@ -9,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace excursion {
@@ -37,8 +38,9 @@ Eigen::VectorXd weighted(const Eigen::VectorXcd& values, const std::vector<doubl
 
 }  // namespace
 
-void matchSound(Model& model, const ResponseTarget& pressure)
+void matchSound(Model& matched, const ResponseTarget& pressure)
 {
+    auto model = matched;
     constexpr double usual = 0.03, fraction = 0.125;  // s; of the shortest period
     auto &area = model.path.parameters[0], &delay = model.path.parameters[1];
     if (!delay.free || area.value == 0.0)
@@ -87,6 +89,7 @@ void matchSound(Model& model, const ResponseTarget& pressure)
     for (std::size_t k = 0; k < heard.size(); ++k)
         heard[k]->value = std::clamp(sizes[1 + static_cast<Eigen::Index>(k)] / sizes[0], heard[k]->lower,
                                      heard[k]->upper);
+    matched = std::move(model);
 }
 
 }  // namespace excursion

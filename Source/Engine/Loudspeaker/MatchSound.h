@@ -9,8 +9,8 @@ namespace excursion {
 /// which its pressure is nearest to the measured one: for each tau from 0 to 30 ms, or twice the present one,
 ///     p(f) exp(j 2 pi f tau) = Sd (c(f) + sum s_k d_k(f))
 /// is linear in Sd and Sd s_k, c what the cone radiates by itself without delay. A search from another delay or sign
-/// ends in one of the valleys beside the right one. An area that is not free takes the sign only, and what would leave
-/// its bounds stays there. Nothing happens where the delay is not free.
+/// ends in one of the valleys beside the right one. An area that is not free takes the sign only, and a strength
+/// that would leave its bounds stays there. Nothing happens where the delay is not free.
 void matchSound(Model&, const ResponseTarget& pressure);
 
 }  // namespace excursion

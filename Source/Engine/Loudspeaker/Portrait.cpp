@@ -78,35 +78,52 @@ private:
     RungeKutta<double> method_;
 };
 
+/// One period of x = A sin(w t).
+struct Swing {
+    double amplitude, w;  ///< m, rad/s
+    std::size_t samples;
+
+    double sampleRate() const { return w * static_cast<double>(samples) / (2.0 * std::numbers::pi); }
+    Motion<double> at(double place) const
+    {
+        const double phase = 2.0 * std::numbers::pi * place / static_cast<double>(samples);
+        return {0.0, amplitude * std::sin(phase), amplitude * w * std::cos(phase)};
+    }
+    PeriodicMotion motion() const
+    {
+        PeriodicMotion all;
+        for (std::size_t n = 0; n < samples; ++n) {
+            const auto now = at(static_cast<double>(n));
+            all.i.push_back(now.i);
+            all.x.push_back(now.x);
+            all.v.push_back(now.v);
+        }
+        return all;
+    }
+};
+
 Portrait::Line loopOf(const Alone& effect, double amplitude)
 {
-    constexpr std::size_t samples = 512;
-    const double w = effect.range().velocity / effect.range().displacement,
-                 sampleRate = w * samples / (2.0 * std::numbers::pi);
-    const auto motionAt = [&](double place) -> Motion<double> {
-        const double phase = 2.0 * std::numbers::pi * place / samples;
-        return {0.0, amplitude * std::sin(phase), amplitude * w * std::cos(phase)};
+    constexpr std::size_t drawn = 128, finest = 32768;
+    Swing swing {amplitude, effect.range().velocity / effect.range().displacement, 4 * drawn};
+    auto motion = swing.motion();
+    const auto steps = [&] {
+        return paceOf(effect.component(), {motion.i, motion.x, motion.v}, 1, swing.sampleRate()).steps;
     };
-    PeriodicMotion motion;
-    for (std::size_t n = 0; n < samples; ++n) {
-        const auto now = motionAt(static_cast<double>(n));
-        motion.i.push_back(now.i);
-        motion.x.push_back(now.x);
-        motion.v.push_back(now.v);
+    while (steps() > 1 && swing.samples < finest) {  // what slips at once is followed in small steps
+        swing.samples *= 2;
+        motion = swing.motion();
     }
-    const auto start = settledMemory(effect.component(), motion, 0, sampleRate);
+    const auto start = settledMemory(effect.component(), motion, 0, swing.sampleRate());
     Walk walk(effect, {start.value.begin(), start.value.end()});
-    const int parts = paceOf(effect.component(), {motion.i, motion.x, motion.v}, 1, sampleRate).steps;
     Portrait::Line line {amplitude, {}, {}, {}};
-    for (std::size_t n = 0; n <= samples; ++n) {
-        if (n % 4 == 0) {
-            const auto now = motionAt(static_cast<double>(n));
+    for (std::size_t n = 0; n <= swing.samples; ++n) {
+        if (n % (swing.samples / drawn) == 0) {
+            const auto now = swing.at(static_cast<double>(n));
             line.argument.push_back(now.x);
             line.value.push_back(-walk.at(now).force);
         }
-        for (int part = 0; part < parts; ++part)
-            walk.step(1.0 / (sampleRate * parts),
-                      [&](double share) { return motionAt(static_cast<double>(n) + (part + share) / parts); });
+        walk.step(1.0 / swing.sampleRate(), [&](double share) { return swing.at(static_cast<double>(n) + share); });
     }
     return line;
 }

@@ -18,7 +18,7 @@ using Complex = std::complex<double>;
 
 struct Cell {
     Complex cross {};
-    double input = 0.0, output = 0.0, weightedFrequency = 0.0;
+    double input = 0.0, output = 0.0, weightedFrequency = 0.0, noise = 0.0;
     int count = 0;
 };
 
@@ -124,16 +124,24 @@ void keepRigid(std::vector<ResponseTarget>& targets)
     }
 }
 
-/// Whether two responses, the second of them the better known one, differ no more than by the deviation of the first.
+/// Whether two responses, the second of them the better known one, nowhere differ by more than the deviation of the
+/// first: of neighbouring points the half may by chance be off by three times its square once in a thousand times.
 bool agree(const ResponseTarget& rough, const ResponseTarget& exact)
 {
     if (rough.quantity != exact.quantity || rough.value.size() != exact.value.size())
         return false;
+    constexpr double chance = 3.0;
+    constexpr std::size_t neighbours = 6;
     std::vector<double> apart;
     for (std::size_t k = 0; k < rough.value.size(); ++k)
         apart.push_back(std::norm(rough.value[k] - exact.value[k]) / (rough.deviation[k] * rough.deviation[k]));
-    constexpr double chance = 1.5;  // of two lines a cell the half of all ratios is below 1, of more lines below 0.7
-    return medianOf(std::move(apart)) < chance;
+    for (std::size_t k = 0; k < apart.size(); k += neighbours) {
+        const auto first = apart.begin() + static_cast<std::ptrdiff_t>(k);
+        const auto count = static_cast<std::ptrdiff_t>(std::min(neighbours, apart.size() - k));
+        if (medianOf(std::vector<double>(first, first + count)) > chance)
+            return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -163,6 +171,7 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
                 cell.cross += section.measured[c][k] * std::conj(U[k]);
                 cell.input += std::norm(U[k]);
                 cell.output += std::norm(section.measured[c][k]);
+                cell.noise += section.deviation[c][k] * section.deviation[c][k] * std::norm(U[k]);
                 cell.weightedFrequency += f * std::norm(U[k]);
                 ++cell.count;
                 totalInput += std::norm(U[k]);
@@ -184,7 +193,9 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
                 continue;
             const Complex G = cell.cross / cell.input;
             const double left = std::max(0.0, cell.output - std::norm(cell.cross) / cell.input);
-            const double variance = cell.count > 1 ? left / (cell.count - 1) / cell.input : 0.0;
+            // One line alone tells nothing of its noise.
+            const double scatter = cell.count > 1 ? left / (cell.count - 1) / cell.input : 0.0,
+                         variance = std::max(scatter, cell.noise / (cell.input * cell.input));
             target.frequency.push_back(cell.weightedFrequency / cell.input);
             target.value.push_back(G);
             // A third of a percent besides: the linear model is a start, not a truth.
