@@ -3,6 +3,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "SmallSetup.h"
 
 #include <catch2/catch.hpp>
@@ -81,4 +82,26 @@ TEST_CASE("A drift does not hide what a model lacks, and all rungs are told by o
     CHECK(current(rungs[0].comparison).noiseFloorDb == current(rungs[1].comparison).noiseFloorDb);
     CHECK(*current(rungs[1].comparison).noiseFloorDb < -60.0);
     CHECK(work.ladder().verdict == Verdict::complete);
+}
+
+TEST_CASE("Two time constants of a coil are followed along their valley until a step tells no more than noise",
+          "[diagnosis]")
+{
+    auto setup = smallSetup();
+    setup.excitation.realizations = 3;
+    setup.excitation.levels = {1.0, 3.0, 9.0};
+    setup.noiseDb = -55.0;
+    bench::Loudspeaker truth;
+    const auto cold = bench::measure(truth, setup);
+    const double seconds = static_cast<double>(cold.length()) / cold.sampleRate;
+    bench::CoilHeating heating;
+    heating.coilResistance = 40.0;
+    heating.magnetResistance = 0.3 * heating.coilResistance;
+    heating.coilCapacity = 0.2 * seconds / heating.coilResistance;
+    heating.magnetCapacity = 100.0 * heating.coilCapacity;
+    truth.coilHeating = heating;
+    auto record = makeRecord(bench::measure(truth, setup));
+    const auto model = fitEffects(record, {"coil-heating"}, {});
+    // Each level's last section, which is held out, is farthest from what the fit has seen.
+    CHECK(compare(model, record, {0, false}).chiSquaredPerValue < 1.15);
 }

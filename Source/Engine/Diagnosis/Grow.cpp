@@ -182,7 +182,7 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         strange_ = {leader->effect->id()};
         return Outcome::again;
     };
-    // What is small shows by derivatives from any start.
+    // At the noise no law is strong, and one start is enough.
     const auto part = progress.part(0.4, 0.8);
     const auto summary = near ? search_.fit(fuller, part) : search_.fitFromEachStart(fuller, tries, part);
     if (!summary.usable())
@@ -229,7 +229,8 @@ bool Growth::byTrial(const Progress& progress)
     for (std::size_t n = 0; n < laws.size(); ++n) {
         const auto count = static_cast<double>(laws.size()), done = static_cast<double>(n);
         Model with;
-        const auto summary = search_.tryLaw(with, *laws[n], progress.part(done / count, (done + 1.0) / count));
+        const auto summary = search_.tryLaw(with, *laws[n],
+                                            progress.part(0.9 * done / count, 0.9 * (done + 1.0) / count));
         if (!summary.usable() || !isAtWork(with.components.back()))
             continue;
         const auto then = search_.left(with);
@@ -241,6 +242,11 @@ bool Growth::byTrial(const Progress& progress)
     }
     if (!best)
         return false;
+    if (auto further = *best; true)  // its trial was brief
+        if (const auto run = search_.fit(further, progress.part(0.9, 1.0)); run.usable()) {
+            best = std::move(further);
+            fit = run;
+        }
     strange_ = search_.takeOutImplausible(*best);
     takeIn(std::move(*best), fit);
     lookAgain();

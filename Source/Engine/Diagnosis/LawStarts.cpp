@@ -42,7 +42,7 @@ bool isNear(const Waypoint& one, const Waypoint& other, double share)
 /// Fits the others and puts the one in place of the model that leaves clearly less: a little less may be what a wrong
 /// shape takes of what else is missing. One that does not come near the model in a brief search has the wrong start.
 FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<Model> others,
-                                 const LeastSquaresOptions& steps, const Progress& progress) const
+                                 const Progress& progress) const
 {
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
@@ -53,8 +53,8 @@ FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<M
         };
         auto run = fit(others[n], brief, part.part(0.0, 0.4));
         double gain = run.usable() ? gains() : -std::numeric_limits<double>::infinity();
-        if (gain > near && steps.maximumIterations > brief.maximumIterations) {
-            run = fit(others[n], steps, part.part(0.4, 1.0));
+        if (gain > near) {
+            run = fit(others[n], full, part.part(0.4, 1.0));
             gain = gains();
         }
         if (run.usable() && gain > clearly) {
@@ -74,7 +74,7 @@ FitSummary WholeSearch::fitFromEachStart(Model& model, const std::set<std::strin
             addOtherStarts(others, model, id);
     const double first = 1.0 / (1.0 + static_cast<double>(others.size()));
     const auto summary = fit(model, full, progress.part(0.0, first));
-    return orBetter(model, summary, std::move(others), full, progress.part(first, 1.0));
+    return orBetter(model, summary, std::move(others), progress.part(first, 1.0));
 }
 
 FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progress& progress) const
@@ -83,7 +83,7 @@ FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progre
     addOtherStarts(others, proposed.model, proposed.effect->id());
     const double first = 1.0 / (1.0 + static_cast<double>(others.size()));
     const auto summary = tryFit(model, proposed, record_, sections_, within(brief), progress.part(0.0, first));
-    return orBetter(model, summary, std::move(others), brief, progress.part(first, 1.0));
+    return orBetter(model, summary, std::move(others), progress.part(first, 1.0));
 }
 
 bool WholeSearch::beginTrialsAt(const Waypoint& place)

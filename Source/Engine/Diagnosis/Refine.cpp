@@ -7,6 +7,8 @@
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
 
+#include <algorithm>
+
 namespace excursion {
 
 FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd,
@@ -39,9 +41,13 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
-    constexpr LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-7};
-    if (onlyNoise())
+    if (onlyNoise()) {
+        // Valleys are long there, such as that of two time constants: on as long as a step tells more than noise.
+        constexpr double noise = 0.5;  // of the cost, half the sum of squares
+        const LeastSquaresOptions alongTheFloor {
+            .maximumIterations = 15, .costTolerance = noise / std::max(1.0, summary.finalCost), .firstDamping = 1e-7};
         return run(alongTheFloor, false, true, 0.5, 1.0);
+    }
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);

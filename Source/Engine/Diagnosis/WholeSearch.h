@@ -90,8 +90,7 @@ public:
     /// From each start of the laws among the newcomers, as what derivatives promise of a start need not come true;
     /// leaves the first one where another leaves 1 dB less.
     FitSummary fitFromEachStart(Model&, const std::set<std::string>& newcomers, const Progress& = {}) const;
-    /// @param model  the result: that of the score, whose newest effect is a law, fitted briefly from each of its
-    /// starts
+    /// @param model  the result: that of the score, whose newest effect is a law, fitted from each of its starts
     FitSummary tryLaw(Model& model, const Score&, const Progress& = {}) const;
     /// Whether laws have not been tried one by one yet at such a place; from now on they have.
     bool beginTrialsAt(const Waypoint&);
@@ -149,8 +148,7 @@ private:
     FitOptions within(const LeastSquaresOptions&) const;
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
-    FitSummary orBetter(Model&, FitSummary, std::vector<Model> others, const LeastSquaresOptions&,
-                        const Progress&) const;
+    FitSummary orBetter(Model&, FitSummary, std::vector<Model> others, const Progress&) const;
     FitSummary glanceAt(Model&) const;
     Left left(const Model&, bool played) const;
     std::set<std::string> strangeIn(const Model&) const;

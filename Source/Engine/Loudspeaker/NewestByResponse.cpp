@@ -113,10 +113,10 @@ double worthwhile(double left, const std::vector<ResponseTarget>& targets)
     return std::min(pays / rowsOf(targets), enough) * left;
 }
 
-/// The responses of the sound, and those of what makes it; no sound where either is not there.
+/// The responses of the sound, and all others; no sound where either is not there.
 struct Heard {
     std::optional<ResponseTarget> sound;
-    std::vector<ResponseTarget> motions;
+    std::vector<ResponseTarget> others;
 };
 
 Heard heardApart(const std::vector<ResponseTarget>& targets)
@@ -126,8 +126,8 @@ Heard heardApart(const std::vector<ResponseTarget>& targets)
         if (target.quantity == Quantity::pressure)
             heard.sound = target;
         else
-            heard.motions.push_back(target);
-    if (heard.motions.empty())
+            heard.others.push_back(target);
+    if (heard.others.empty())
         heard.sound.reset();
     return heard;
 }
@@ -203,7 +203,7 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     const auto heard = newest.effect->emits() ? heardApart(few) : Heard {};
     const auto begin = [&](Model trial) {
         if (heard.sound)  // heard without the effect the sound may have come from another time, or upside down
-            if (auto moved = trial; fitResponse(moved, heard.motions, {10, 1e-3}).usable()) {
+            if (auto moved = trial; fitResponse(moved, heard.others, {10, 1e-3}).usable()) {
                 matchSound(moved, *heard.sound);
                 from(std::move(moved), few, {10, 1e-3});
             }
