@@ -42,10 +42,12 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
-        // Valleys are long there, such as that of two time constants: on as long as a step tells more than noise.
-        constexpr double noise = 0.5;  // of the cost, half the sum of squares
-        const LeastSquaresOptions alongTheFloor {
-            .maximumIterations = 15, .costTolerance = noise / std::max(1.0, summary.finalCost), .firstDamping = 1e-7};
+        LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-7};
+        if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
+            constexpr double noise = 0.5;  // of the cost, half the sum of squares
+            alongTheFloor.maximumIterations = 15;
+            alongTheFloor.costTolerance = noise / std::max(1.0, summary.finalCost);
+        }
         return run(alongTheFloor, false, true, 0.5, 1.0);
     }
     if (!record.noiseKnown)
