@@ -39,11 +39,9 @@ Series series(const ResidualCurve& curve, const char* title, Role role, double a
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after)
 {
     std::vector<Plot> plots;
-    auto curves = before.residuals;
-    curves.insert(curves.end(), before.overTime.begin(), before.overTime.end());
-    for (const auto& curve : curves) {
+    const auto add = [&](const ResidualCurve& curve) {
         if (curve.argument.empty())
-            continue;
+            return;
         const auto across = displayUnit(largest(curve.argument), curve.againstUnit);
         const auto up = displayUnit(std::max(largest(curve.mean), largest(curve.scatter)), curve.unit);
         Plot plot;
@@ -54,7 +52,9 @@ std::vector<Plot> residualPlots(const Comparison& before, const Comparison* afte
         if (const auto* now = after ? match(*after, curve) : nullptr)
             plot.series.push_back(series(*now, "after", Role::after, across.factor, up.factor));
         plots.push_back(std::move(plot));
-    }
+    };
+    std::for_each(before.residuals.begin(), before.residuals.end(), add);
+    std::for_each(before.overTime.begin(), before.overTime.end(), add);
     return plots;
 }
 

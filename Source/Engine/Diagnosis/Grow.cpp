@@ -242,11 +242,11 @@ bool Growth::byTrial(const Progress& progress)
     }
     if (!best)
         return false;
-    if (auto further = *best; true)  // its trial was brief
-        if (const auto run = search_.fit(further, progress.part(0.9, 1.0)); run.usable()) {
-            best = std::move(further);
-            fit = run;
-        }
+    auto further = *best;  // its trial was brief
+    if (const auto run = search_.fit(further, progress.part(0.9, 1.0)); run.usable()) {
+        best = std::move(further);
+        fit = run;
+    }
     strange_ = search_.takeOutImplausible(*best);
     takeIn(std::move(*best), fit);
     lookAgain();

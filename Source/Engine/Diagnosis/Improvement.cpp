@@ -165,13 +165,13 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
         base.comparison = compare(base.model, record);
     }
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
+    if (rungs.empty())
+        return {};
     double reached = base.comparison.chiSquaredPerValue;
     if (oneIsKnown)  // the noise may be another one now
         if (const auto byItsTrial = tryCompare(named.front().model, record, {0, false}))
             reached = std::min(reached, byItsTrial->chiSquaredPerValue);
-    if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < reached))
-        return {};
-    return rungs;
+    return rungs.back().comparison.chiSquaredPerValue < reached ? rungs : std::vector<Rung> {};
 }
 
 void Improvement::add(const std::string& id, const Progress& progress)

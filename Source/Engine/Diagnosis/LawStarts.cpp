@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace excursion {
@@ -44,21 +43,17 @@ bool isNear(const Waypoint& one, const Waypoint& other, double share)
 FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<Model> others,
                                  const Progress& progress) const
 {
+    constexpr double near = -2.0, clearly = 1.0;  // dB
+    auto least = summary.usable() && !others.empty() ? left(model) : Left {};
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
         const auto part = progress.part(done / count, (done + 1.0) / count);
-        constexpr double near = -2.0, clearly = 1.0;  // dB
-        const auto gains = [&] {
-            return summary.usable() ? lost(left(model), left(others[n])) : std::numeric_limits<double>::infinity();
-        };
-        auto run = fit(others[n], brief, part.part(0.0, 0.4));
-        double gain = run.usable() ? gains() : -std::numeric_limits<double>::infinity();
-        if (gain > near) {
-            run = fit(others[n], full, part.part(0.4, 1.0));
-            gain = gains();
-        }
-        if (run.usable() && gain > clearly) {
+        const auto gains = [&](double enough) { return !summary.usable() || lost(least, left(others[n])) > enough; };
+        if (!fit(others[n], brief, part.part(0.0, 0.4)).usable() || !gains(near))
+            continue;
+        if (const auto run = fit(others[n], full, part.part(0.4, 1.0)); run.usable() && gains(clearly)) {
             model = std::move(others[n]);
+            least = left(model);
             summary = run;
         }
     }

@@ -15,6 +15,17 @@
 namespace excursion {
 namespace {
 
+/// The delays that are tried, s: from 0 on, to the usual ones or twice the present one, in steps of an eighth of the
+/// shortest period.
+struct Delays {
+    double step, longest;
+
+    Delays(double present, const ResponseTarget& pressure)
+        : step(0.125 / pressure.frequency.back()), longest(std::max(0.03, 2.0 * present))
+    {
+    }
+};
+
 /// The strengths that only the sound shows.
 std::vector<Parameter*> heardStrengths(Model& model)
 {
@@ -38,15 +49,42 @@ Eigen::VectorXd weighted(const Eigen::VectorXcd& values, const std::vector<doubl
 
 }  // namespace
 
+void matchArrival(Model& model, const ResponseTarget& pressure)
+{
+    double &area = model.path.parameters[0].value, &delay = model.path.parameters[1].value;
+    const Delays delays(delay, pressure);
+    const auto response = respond(model, {Quantity::pressure}, pressure.frequency).front();
+    std::vector<std::complex<double>> turned(pressure.frequency.size()), step(turned.size());
+    for (std::size_t k = 0; k < turned.size(); ++k) {
+        const double omega = 2.0 * std::numbers::pi * pressure.frequency[k];
+        const auto ratio = pressure.value[k] / response.value[k] * std::polar(1.0, -omega * delay);
+        const double size = std::abs(ratio);
+        turned[k] = size > 0.0 && std::isfinite(size) ? ratio / size : 0.0;
+        step[k] = std::polar(1.0, omega * delays.step);
+    }
+    double best = 0.0;
+    for (double tau = 0.0; tau < delays.longest; tau += delays.step) {
+        double agreement = 0.0;
+        for (std::size_t k = 0; k < turned.size(); ++k) {
+            agreement += turned[k].real();
+            turned[k] *= step[k];
+        }
+        if (std::abs(agreement) > std::abs(best)) {
+            best = agreement;
+            delay = tau;
+        }
+    }
+    if (best < 0.0)
+        area = -area;
+}
+
 void matchSound(Model& matched, const ResponseTarget& pressure)
 {
     auto model = matched;
-    constexpr double usual = 0.03, fraction = 0.125;  // s; of the shortest period
     auto &area = model.path.parameters[0], &delay = model.path.parameters[1];
     if (!delay.free || area.value == 0.0)
         return;
-    const double longest = std::max(usual, 2.0 * delay.value), step = fraction / pressure.frequency.back();
-
+    const Delays delays(delay.value, pressure);
     const auto heard = heardStrengths(model);
     const auto points = static_cast<Eigen::Index>(pressure.frequency.size());
     delay.value = 0.0;
@@ -69,7 +107,7 @@ void matchSound(Model& matched, const ResponseTarget& pressure)
 
     double most = -1.0;
     Eigen::VectorXd best = Eigen::VectorXd::Zero(columns.cols());
-    for (double tau = 0.0; tau < longest; tau += step) {
+    for (double tau = 0.0; tau < delays.longest; tau += delays.step) {
         Eigen::VectorXcd early(points);
         for (Eigen::Index k = 0; k < points; ++k) {
             const auto n = static_cast<std::size_t>(k);

@@ -5,6 +5,10 @@
 
 namespace excursion {
 
+/// Gives the model the delay, and the area its sign, with which the phase of its pressure is that of the measured one
+/// at most frequencies: from another delay a fit of responses may not get there beside a port that sounds.
+void matchArrival(Model&, const ResponseTarget& pressure);
+
 /// Gives a model whose motion is right the delay tau, the area Sd and the strengths s_k that only the sound shows, with
 /// which its pressure is nearest to the measured one: for each tau from 0 to 30 ms, or twice the present one,
 ///     p(f) exp(j 2 pi f tau) = Sd (c(f) + sum s_k d_k(f))

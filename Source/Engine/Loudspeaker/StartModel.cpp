@@ -3,6 +3,7 @@
 
 #include "Engine/Estimate/PhysicalDelay.h"
 #include "Engine/Loudspeaker/ImpedanceScan.h"
+#include "Engine/Loudspeaker/MatchSound.h"
 #include "Engine/Loudspeaker/PistonBand.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Numerics/Median.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstdio>
 #include <limits>
 #include <numbers>
@@ -121,39 +121,6 @@ private:
     Model best_;
     double lowest_ = std::numeric_limits<double>::infinity();
 };
-
-/// Gives the model the delay, and the area its sign, with which the phase of its pressure is that of the measured one
-/// at most frequencies: from another delay a fit of responses may not get there beside a port that sounds.
-void matchArrival(Model& model, const ResponseTarget& pressure)
-{
-    constexpr double usual = 0.03, fraction = 0.125;  // s; of the shortest period
-    double &area = model.path.parameters[0].value, &delay = model.path.parameters[1].value;
-    const double longest = std::max(usual, 2.0 * delay), turn = 2.0 * std::numbers::pi;
-    const auto response = respond(model, {Quantity::pressure}, pressure.frequency).front();
-    std::vector<std::complex<double>> turned(pressure.frequency.size()), step(turned.size());
-    const double time = fraction / pressure.frequency.back();
-    for (std::size_t k = 0; k < turned.size(); ++k) {
-        const double omega = turn * pressure.frequency[k];
-        const auto ratio = pressure.value[k] / response.value[k] * std::polar(1.0, -omega * delay);
-        const double size = std::abs(ratio);
-        turned[k] = size > 0.0 && std::isfinite(size) ? ratio / size : 0.0;
-        step[k] = std::polar(1.0, omega * time);
-    }
-    double best = 0.0;
-    for (double tau = 0.0; tau < longest; tau += time) {
-        double agreement = 0.0;
-        for (std::size_t k = 0; k < turned.size(); ++k) {
-            agreement += turned[k].real();
-            turned[k] *= step[k];
-        }
-        if (std::abs(agreement) > std::abs(best)) {
-            best = agreement;
-            delay = tau;
-        }
-    }
-    if (best < 0.0)
-        area = -area;
-}
 
 /// Gives the model the mass, and the area, with which its motion and pressure are of the size that was measured,
 /// whatever their units.
