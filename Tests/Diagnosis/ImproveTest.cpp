@@ -133,7 +133,7 @@ TEST_CASE("One hidden effect is named, added, and the error falls to the noise",
                              "inductance-current", "eddy-currents", "creep", "damping-velocity", "friction",
                              "coil-heating", "vented-box");
     INFO(id);
-    const auto ladder = improve(seedTake({{id, 0.25}}));
+    const auto ladder = improve(seedTake({{id, 0.25, false}}));
     CHECK(added(ladder) == std::vector {id});
     CHECK(ladder.verdict == Verdict::complete);
     CHECK(ladder.withdrawn.empty());

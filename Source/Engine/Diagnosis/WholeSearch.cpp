@@ -46,6 +46,11 @@ FitOptions WholeSearch::within(const LeastSquaresOptions& steps) const
 
 FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { return fit(model, full, progress); }
 
+bool WholeSearch::gainsAtOnce(Model model, const Left& before, double dB) const
+{
+    return fit(model, glance).usable() && lost(before, left(model)) > dB;
+}
+
 /// With laws that are fed alone, as they are quick.
 FitSummary WholeSearch::glanceAt(Model& model) const
 {
