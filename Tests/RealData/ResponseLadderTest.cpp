@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measured frequency responses: what the ladder adds to the base model, and that it does not claim more than they show.
+#include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Import/ReadTake.h"
 #include "Engine/Loudspeaker/FitResponse.h"
@@ -100,6 +102,25 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     CHECK(box->parameters[0].value > 2.0 * ladder.model().baseParameter("K").value);
     CHECK(box->parameters[1].value == Approx(6.5).margin(1.0));
     checkParameters(ladder.model());
+}
+
+TEST_CASE("An effect that is put in by hand leaves no more than the model without it", "[slow]")
+{
+    const auto folder = dataFolder("novak");
+    if (folder.empty())
+        return;
+    const auto take = std::get<Spectra>(readTake(folder / "novak.csv"));
+    std::vector<std::string> effects;
+    double before = 100.0;
+    for (const char* id : {"eddy-currents", "creep", "vented-box"}) {
+        effects.emplace_back(id);
+        Rung rung;
+        rung.comparison = compare(fitEffects(take, effects), take);
+        const double left = std::hypot(percent(rung), percent(rung, Quantity::velocity));
+        INFO(id);
+        CHECK(left < 1.02 * before);  // the fit weights its points in another way
+        before = left;
+    }
 }
 
 TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor", "[.thorough][slow]")

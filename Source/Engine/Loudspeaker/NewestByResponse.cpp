@@ -48,6 +48,13 @@ bool isPossible(const Model& model, const Part& part)
                        [](const Parameter& p) { return !p.strength || p.value >= p.lower; });
 }
 
+/// What the model leaves with its newest effect at rest, as it stands.
+double leftAtRest(Model model, const std::vector<ResponseTarget>& targets)
+{
+    model.components.back() = scaled(std::move(model.components.back()), 0.0);
+    return fitResponse(model, targets, {1, 1e-3}).initialCost;
+}
+
 double rowsOf(const std::vector<ResponseTarget>& targets)
 {
     double rows = 0.0;
@@ -217,13 +224,20 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
             begin(withResonance(trial, resonance));
         begin(std::move(trial));
     }
-    std::stable_sort(ways.begin(), ways.end(), better);
+    const auto sort = [&](const std::vector<ResponseTarget>& at) {
+        std::stable_sort(ways.begin(), ways.end(), better);
+        // A base that resonates elsewhere may be lost there, plausible or not.
+        std::stable_partition(ways.begin(), ways.end(),
+                              [rest = leftAtRest(model, at)](const Way& way) { return way.cost < rest; });
+    };
+    sort(few);
     ways.resize(std::min(ways.size(), most));
     for (auto& way : std::exchange(ways, {}))
         from(std::move(way.model), enough, {40, 1e-5});
     if (ways.empty())
         return {};
-    auto best = std::move(std::min_element(ways.begin(), ways.end(), better)->model);
+    sort(enough);
+    auto best = std::move(ways.front().model);
     // More than once: priors and the reach of the search are relative to where a fit starts.
     fitResponse(best, targets, {40, 1e-6});
     auto summary = fitResponse(best, targets, {80, 1e-8});
