@@ -202,6 +202,16 @@ TEST_CASE("Friction that slips at once is found, and no damping stands for it", 
     requireAtTheNoise(ladder.rungs.back().comparison);
 }
 
+TEST_CASE("The motion alone tells a force factor from a suspension", "[improve][slow]")
+{
+    const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness");
+    INFO(id);
+    const auto ladder = improve(seedTake({{id, 0.25}}, {Quantity::displacement}));
+    CHECK(added(ladder) == std::vector {id});
+    CHECK(ladder.verdict == Verdict::complete);
+    requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
 TEST_CASE("The current alone tells a stiffening suspension", "[improve][slow]")
 {
     const auto ladder = improve(seedTake({{"stiffness", 0.3}}, {Quantity::current}));

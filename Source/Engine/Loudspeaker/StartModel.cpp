@@ -174,7 +174,7 @@ void considerGrid(Contest& contest, Model model, const Sight& sight)
         Re = 0.8 * medianOf(std::move(ohms));
     }
     for (double f0 = std::max(sight.low, 2.0) * 1.1; f0 < std::min(sight.high, 3000.0); f0 *= 1.45)
-        for (const double Q : {1.0, 5.0}) {
+        for (const double Q : {1.0, 5.0, 25.0}) {
             const double omega = 2.0 * std::numbers::pi * f0;
             const double mass = model.baseParameter("m").value;
             model.baseParameter("K").value = mass * omega * omega;
@@ -214,7 +214,8 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     model.path.parameters[0].free = sight.pressure && (sight.motion || !sight.mass);
     if (electrical) {
         model.baseParameter("m").free = sight.mass;
-        model.baseParameter("Re").free = sight.current != nullptr;
+        // Motion alone tells the sum of the coil's damping and the suspension's: all would be as well without a coil.
+        model.baseParameter("Re").free = model.baseParameter("Rms").free = sight.current != nullptr;
     }
     Contest contest(targets);
     if (electrical && sight.current)
