@@ -10,7 +10,8 @@
 namespace excursion {
 namespace {
 
-constexpr double shareTime = 0.003;  // s, see Glide
+constexpr double shareTime = 0.003;   // s, see Glide
+constexpr double settlingTime = 0.2;  // s, of resonances down to 20 Hz
 
 /// Steps a sample, at most 64, for which the laws' fastest eigenvalue times the step stays within the limit.
 int stepsWithin(double limit, const Model& model, double sampleRate)
@@ -29,7 +30,8 @@ Cone::Cone(const Model& model, double sampleRate)
       reference_(model, sampleRate),
       radiator_(model),
       area_(radiator_.area()),
-      share_(shareTime, sampleRate)
+      share_(shareTime, sampleRate),
+      settling_(static_cast<int>(settlingTime * sampleRate))
 {
     const auto linear = smallSignal(linearPart(model));  // as in Reference
     linear_ = (linear.C.row(SmallSignal::sound) * reference_.basis()).transpose() / area_;
@@ -41,18 +43,36 @@ void Cone::rest()
     motion_.reset();
     past_ = {};
     reference_.reset();
+    left_ = 0;
 }
 
 void Cone::reset()
 {
     rest();
-    share_.jump();
+    share_.jump(asked_);
 }
 
 void Cone::setLinearShareRemoved(double share)
 {
     if (share >= 0.0 && share <= 1.0)
-        share_.aim(share);
+        asked_ = share;
+}
+
+/// What is subtracted.
+double Cone::linearShare(double u)
+{
+    if (asked_ == 0.0 && share_.still() && share_.value() == 0.0) {
+        left_ = settling_ + 1;
+        return 0.0;
+    }
+    if (left_ > settling_)
+        reference_.reset();
+    reference_.step(u);
+    if (left_ > 0 && --left_ > 0)
+        return 0.0;
+    share_.aim(asked_);
+    const double share = share_.step();
+    return share * (linear_.dot(reference_.state()) + linearInput_ * u);
 }
 
 bool Cone::step(double& sample)
@@ -63,9 +83,8 @@ bool Cone::step(double& sample)
     for (int s = 0; s < substeps_; ++s)
         acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
     past_ = {u, past_[0], past_[1]};
-    reference_.step(u);
-    const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
-    sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - share * linear;
+    const double linear = linearShare(u);
+    sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - linear;
     if (plausible_.holds(motion_.current(), motion_.displacement(), motion_.velocity()) && std::isfinite(acceleration)
         && std::isfinite(linear))
         return true;

@@ -28,7 +28,8 @@ public:
     void rest();                                ///< at rest from now on
     void reset();                               ///< at rest, and the share at its target
 
-    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly
+    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly. The linear driver
+    ///               plays while it is needed only: asked for in the middle of a sound it has settled first
     void setLinearShareRemoved(double share);
 
     /// @param sample  V (or N); becomes m/s^2
@@ -40,6 +41,8 @@ public:
     double current() const { return motion_.current(); }            ///< A
 
 private:
+    double linearShare(double u);
+
     bool corrected_;  ///< the laws are so fast that they are evaluated twice per step; see ExponentialAdams
     int substeps_;
     ExponentialAdams motion_;
@@ -50,6 +53,8 @@ private:
     Eigen::VectorXd linear_;  ///< the part of the reference's state that is heard, m/s^2
     double linearInput_;      ///< and of the input
     Glide share_;
+    double asked_ = 0.0;             ///< share, in place of which there is none until the reference has settled
+    int settling_, left_ = 0;        ///< samples that the reference takes to settle, and how many are left
     std::array<double, 3> past_ {};  ///< u(n-1), u(n-2), u(n-3)
 };
 
