@@ -207,6 +207,14 @@ TEST_CASE("The motion alone tells a force factor from a suspension", "[improve][
     const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness");
     INFO(id);
     const auto ladder = improve(seedTake({{id, 0.25}}, {Quantity::displacement}));
+    const auto& base = ladder.rungs.front().model;
+    CHECK_FALSE(base.baseParameter("Re").free);
+    CHECK_FALSE(base.baseParameter("Rms").free);  // a linear motion does not tell it from the coil's damping
+    const double Bl = base.baseParameter("Bl").value, coil = Bl * Bl / base.baseParameter("Re").value;
+    CHECK(coil / (coil + base.baseParameter("Rms").value) == Approx(0.8).margin(0.1));
+    CHECK_THAT(ladder.sentence, Catch::Contains("Re is held at"));
+    CHECK(ladder.rungs.front().diagnosis.ranking.front().effect == id);
+    CHECK(ladder.model().baseParameter("Rms").free);
     CHECK(added(ladder) == std::vector {id});
     CHECK(ladder.verdict == Verdict::complete);
     requireAtTheNoise(ladder.rungs.back().comparison);

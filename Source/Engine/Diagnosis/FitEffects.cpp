@@ -41,7 +41,6 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
     quick.fed = true;
     auto last = fit(model, record, effects.empty() ? estimationSections(record) : trialSections(record, 2),
                     effects.empty() ? options : quick, progress.part(0.0, step));
-    model.baseParameter("Rms").free = true;  // laws tell the coil's damping from the suspension's
     double done = step;
     for (const auto& id : effects) {
         tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));

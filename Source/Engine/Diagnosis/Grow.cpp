@@ -164,8 +164,8 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         return Outcome::stuck;
     auto trial = backed(asked_.scores, strange_);
     const bool near = record_.noiseKnown && now_.chiSquaredPerValue < nearNoise;
-    const bool onTrust = trial.empty() && near;
-    if (onTrust)
+    const bool unbacked = trial.empty() && near;
+    if (unbacked)
         trial = possible(asked_.scores, strange_);
     const auto* leader = trial.empty() || near || !record_.noiseKnown ? nullptr : leaderOf(asked_, strange_);
     if (leader && std::find(trial.begin(), trial.end(), leader) != trial.end())
@@ -177,7 +177,7 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         return Outcome::stuck;
     auto fuller = withAll(trial, linear, whole_.model, search_, progress);
     const auto tries = added(fuller, whole_.model);
-    if (tries.empty() || (onTrust && !search_.gainsAtOnce(fuller, now_, barelyShown)))
+    if (tries.empty() || (unbacked && !search_.gainsAtOnce(fuller, now_, barelyShown)))
         return Outcome::stuck;
     const auto withoutLeader = [&] {  // it may have taken those down that the vote backs
         strange_ = {leader->effect->id()};

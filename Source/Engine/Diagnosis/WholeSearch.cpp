@@ -48,7 +48,7 @@ FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { retu
 
 bool WholeSearch::gainsAtOnce(Model model, const Left& before, double dB) const
 {
-    return fit(model, glance).usable() && lost(before, left(model)) > dB;
+    return fit(model, {2, 1e-3}).usable() && lost(before, left(model)) > dB;  // a shape moves once its law is at work
 }
 
 /// With laws that are fed alone, as they are quick.

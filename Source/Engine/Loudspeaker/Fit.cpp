@@ -147,6 +147,15 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     return summary;
 }
 
+/// Without a current only laws tell the coil's damping from the suspension's.
+void holdUntold(Model& model, const Record& record)
+{
+    const auto& seen = record.channels;
+    const bool current = std::find(seen.begin(), seen.end(), Quantity::current) != seen.end();
+    if (model.electrical() && !current)
+        model.baseParameter("Rms").free = hasLaws(model);
+}
+
 constexpr std::size_t roomForSlopes = 1 << 26;  // numbers, of 4 bytes
 
 std::size_t residualsOf(const Record& record, const std::vector<std::size_t>& sections)
@@ -202,6 +211,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
     followOthers(model);
+    holdUntold(model, record);
     OutputErrorOptions run;
     run.threads = options.threads;
     if (options.fed && hasPeriods(record)) {

@@ -95,8 +95,9 @@ bool isSeen(const Model&, std::size_t component);
 
 /// A linear base model with start values that need no tuning, from a micro speaker to a subwoofer: candidates over
 /// resonance frequency, quality factor and electrical damping are fitted, and the best is kept. Parameters that the
-/// channels do not determine (without a mechanical channel only Bl^2/m, Rms/m and K/m are determined) are held at
-/// typical values and marked as not free.
+/// channels do not determine (without a mechanical channel only Bl^2/m, Rms/m and K/m are determined; without a current
+/// only Bl/m, K/m and Rms + Bl^2/Re over m, for an Re that is a guess) are held at typical values and marked as not
+/// free.
 Model startModel(const std::vector<ResponseTarget>&, bool electrical, const DriverInfo&);
 
 /// The assumptions behind the parameters, in sentences that begin with a blank: a mass held by convention, a motion

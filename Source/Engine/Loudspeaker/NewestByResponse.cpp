@@ -36,7 +36,8 @@ Model withResonance(Model model, double frequency)
     constexpr double quality = 4.0;
     const double omega = 2.0 * std::numbers::pi * frequency, mass = model.baseParameter("m").value;
     model.baseParameter("K").value = mass * omega * omega;
-    model.baseParameter("Rms").value = mass * omega / quality;
+    if (model.baseParameter("Rms").free)
+        model.baseParameter("Rms").value = mass * omega / quality;
     return model;
 }
 
@@ -226,7 +227,7 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     }
     const auto sort = [&](const std::vector<ResponseTarget>& at) {
         std::stable_sort(ways.begin(), ways.end(), better);
-        // A base that resonates elsewhere may be lost there, plausible or not.
+        // From a base that resonates elsewhere a fit may end in a useless minimum, with plausible values or not.
         std::stable_partition(ways.begin(), ways.end(),
                               [rest = leftAtRest(model, at)](const Way& way) { return way.cost < rest; });
     };

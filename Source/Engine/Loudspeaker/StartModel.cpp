@@ -40,6 +40,18 @@ void rescale(Model& model, double mass)
         model.baseParameter("Bl").value *= std::sqrt(ratio);
 }
 
+/// The same motion, but for the inductance, of a driver whose coil has this share of the damping Rms + Bl^2/Re.
+void shareDamping(Model& model, double coil)
+{
+    const double Re = model.baseParameter("Re").value, m = model.baseParameter("m").value,
+                 slope = model.baseParameter("Bl").value / m,  // Bl/m is seen, and so are K/m and
+        rate = model.baseParameter("Rms").value / m + slope * slope * m / Re;
+    rescale(model, coil * rate * Re / (slope * slope));
+    const double mass = model.baseParameter("m").value;
+    model.baseParameter("Bl").value = slope * mass;
+    model.baseParameter("Rms").value = (1.0 - coil) * rate * mass;
+}
+
 /// How many times larger the measured response is than the model's.
 double sizeOver(const Model& model, const ResponseTarget& target)
 {
@@ -214,7 +226,7 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     model.path.parameters[0].free = sight.pressure && (sight.motion || !sight.mass);
     if (electrical) {
         model.baseParameter("m").free = sight.mass;
-        // Motion alone tells the sum of the coil's damping and the suspension's: all would be as well without a coil.
+        // Without a current a driver with hardly any coil fits as well: only the sum of both dampings shows.
         model.baseParameter("Re").free = model.baseParameter("Rms").free = sight.current != nullptr;
     }
     Contest contest(targets);
@@ -232,6 +244,9 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
         rescale(best, typicalMass(f0, driver.coneArea));
         matchSizes(best, sight);
     }
+    constexpr double usualShare = 0.8;
+    if (electrical && !sight.current)
+        shareDamping(best, usualShare);
     fitResponse(best, even, {60, 1e-8});
     best.name = driver.name;
     return best;
@@ -251,6 +266,10 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
                   "with it.";
     if (model.electrical() && !model.baseParameter("m").free && model.path.parameters[0].free)
         text += " The area of the cone follows from that guess and the size of the pressure.";
+    if (model.electrical() && !model.baseParameter("Re").free)
+        text += " Re is held at " + print("%.3g", model.baseParameter("Re").value)
+                + " ohm, a guess: without a measured current m, Rms and K are known but for a common factor"
+                + (model.baseParameter("Rms").free ? "." : ", and the coil's share of the damping is a guess, too.");
     double highest = 0.0;
     for (const auto& target : targets)
         highest = std::max(highest, target.frequency.back());

@@ -49,6 +49,8 @@ void Chain::set(const ChainControls& controls)
             rest_ = 0.0;
             played_.turn(plays);
             played_.jump();
+            if (plays)
+                engine_->resetPlaying();
         }
         if (plays && !played_.runs())
             engine_->resetPlaying();

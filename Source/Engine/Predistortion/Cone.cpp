@@ -6,18 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace excursion {
 namespace {
 
-constexpr double shareTime = 0.003;   // s, see Glide
-constexpr double settlingTime = 0.2;  // s, of resonances down to 20 Hz
+constexpr double shareTime = 0.003;  // s, see Glide
 
 /// Steps a sample, at most 64, for which the laws' fastest eigenvalue times the step stays within the limit.
 int stepsWithin(double limit, const Model& model, double sampleRate)
 {
     const double fastest = ExponentialStep(model, 1.0 / sampleRate).fastestLaw();
     return static_cast<int>(std::clamp(std::ceil(fastest / (limit * sampleRate)), 1.0, 64.0));
+}
+
+/// s, after which the resonances of a linear driver have forgotten how they began; a second at most.
+double settlingTime(const SmallSignal& linear)
+{
+    constexpr double timeConstants = 7.0, longest = 1.0;
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const auto& pole : poles(linear))
+        if (std::abs(pole.imag()) > std::abs(pole.real()))
+            slowest = std::min(slowest, std::abs(pole.real()));
+    return std::min(timeConstants / slowest, longest);
 }
 
 }  // namespace
@@ -30,10 +41,10 @@ Cone::Cone(const Model& model, double sampleRate)
       reference_(model, sampleRate),
       radiator_(model),
       area_(radiator_.area()),
-      share_(shareTime, sampleRate),
-      settling_(static_cast<int>(settlingTime * sampleRate))
+      share_(shareTime, sampleRate)
 {
     const auto linear = smallSignal(linearPart(model));  // as in Reference
+    settling_ = static_cast<int>(settlingTime(linear) * sampleRate);
     linear_ = (linear.C.row(SmallSignal::sound) * reference_.basis()).transpose() / area_;
     linearInput_ = linear.D[SmallSignal::sound] / area_;
 }

@@ -29,7 +29,8 @@ public:
     void reset();                               ///< at rest, and the share at its target
 
     /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly. The linear driver
-    ///               plays while it is needed only: asked for in the middle of a sound it has settled first
+    ///               runs only while a share is removed: switched on in the middle of a sound, it first settles, for a
+    ///               second at most, and nothing is subtracted until then
     void setLinearShareRemoved(double share);
 
     /// @param sample  V (or N); becomes m/s^2
@@ -53,8 +54,9 @@ private:
     Eigen::VectorXd linear_;  ///< the part of the reference's state that is heard, m/s^2
     double linearInput_;      ///< and of the input
     Glide share_;
-    double asked_ = 0.0;             ///< share, in place of which there is none until the reference has settled
-    int settling_, left_ = 0;        ///< samples that the reference takes to settle, and how many are left
+    double asked_ = 0.0;             ///< share; none is taken off until the reference has settled
+    int settling_ = 0;               ///< samples that this takes
+    int left_ = 0;                   ///< of these; settling_ + 1: the reference does not run
     std::array<double, 3> past_ {};  ///< u(n-1), u(n-2), u(n-3)
 };
 

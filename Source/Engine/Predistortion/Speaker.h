@@ -28,7 +28,7 @@ public:
     int substeps() const { return cone_.substeps(); }        ///< steps per sample of the higher rate
     void reset();
 
-    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly
+    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly, see Cone
     void setLinearShareRemoved(double share) { cone_.setLinearShareRemoved(share); }
 
     /// @param in   V (or N); n samples
