@@ -63,6 +63,22 @@ TEST_CASE("A chain does what its mode says, always as late", "[chain]")
     CHECK(relativeError(sum, played(Mode::speaker, u)) < 1e-4);
 }
 
+TEST_CASE("What a speaker did before a bypass is not heard after it", "[chain]")
+{
+    Chain chain(everything(), {48000.0, 2}, controls(Mode::speaker));
+    auto u = burst(48000.0, 0.3, 1.0);
+    u.resize(u.size() / 2);  // at its loudest
+    through(chain, u);
+    const std::vector<double> silence(24000, 0.0);
+    for (const auto mode : {Mode::speaker, Mode::distortion, Mode::audition}) {
+        INFO(name(mode));
+        chain.set(controls(Mode::bypass));
+        through(chain, silence);
+        chain.set(controls(mode));
+        CHECK(rms(through(chain, silence)) == 0.0);
+    }
+}
+
 TEST_CASE("No mode lets through what is not finite", "[chain]")
 {
     for (const auto mode : modes) {
