@@ -275,3 +275,24 @@ TEST_CASE("Another motion is not seen by the coil", "[datasheet]")
         CHECK(worst < 1e-6 * most);
     }
 }
+
+TEST_CASE("A motion alone tells no figure that hangs on the coil")
+{
+    ScaledModel given {midbass()};
+    given.model.baseParameter("Re").free = false;
+    const auto told = [&](const char* symbol) {
+        const auto figures = thieleSmall(given);
+        const auto& figure = figureNamed(figures, symbol);
+        CHECK(std::isnan(figure.value) == !figure.why.empty());
+        return figure.why.empty();
+    };
+    for (const char* symbol : {"fs", "Qms", "Qes", "Qts"})  // laws have told the coil's share of the damping
+        CHECK(told(symbol));
+    for (const char* symbol : {"Re", "Mms", "Cms", "Rms"})
+        CHECK_FALSE(told(symbol));
+    given.model.baseParameter("Rms").free = false;
+    for (const char* symbol : {"fs", "Qts"})
+        CHECK(told(symbol));
+    for (const char* symbol : {"Re", "Mms", "Qms", "Qes", "Bl"})
+        CHECK_FALSE(told(symbol));
+}

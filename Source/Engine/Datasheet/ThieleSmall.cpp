@@ -112,6 +112,24 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
 }
 
 /// Whether a number is another one for a model that could be as well.
+/// The same motion, but for the laws, of a driver with another coil: this many times the resistance, and of what
+/// remains of the damping the coil has this many times its share.
+Model withCoil(Model model, double resistance, double share)
+{
+    auto& Re = model.baseParameter("Re").value;
+    auto& Bl = model.baseParameter("Bl").value;
+    auto& m = model.baseParameter("m").value;
+    auto& Rms = model.baseParameter("Rms").value;
+    const double rate = (Rms + Bl * Bl / Re) / m;
+    Re *= resistance;
+    model.baseParameter("Le").value *= resistance;
+    m *= share / resistance;
+    model.baseParameter("K").value *= share / resistance;
+    Bl *= share;
+    Rms = rate * m - Bl * Bl / Re;
+    return model;
+}
+
 bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); }
 
 }  // namespace
@@ -126,6 +144,10 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
     auto otherArea = model;
     otherArea.path.parameters[0].value *= other;
     const auto ifMoved = of(withMotion(model, other)), ifWider = of(otherArea);
+    const bool coilIsGuessed = model.electrical() && !model.baseParameter("Re").free;
+    const auto ifOtherCoil = coilIsGuessed ? of(withCoil(model, other, 1.0)) : numbers,
+               ifOtherShare = coilIsGuessed && !model.baseParameter("Rms").free ? of(withCoil(model, 1.0, 1.0 / other))
+                                                                                : numbers;
     auto figures = blanks();
     for (std::size_t k = 0; k < figures.size(); ++k) {
         auto& figure = figures[k];
@@ -136,6 +158,8 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
             figure.why = "voltage and current alone do not show the moving mass; give it, or Bl";
         } else if (given.areaIsGuessed && differs(numbers[n], ifWider[n])) {
             figure.why = "the take does not tell the area of the cone; give it";
+        } else if (differs(numbers[n], ifOtherCoil[n]) || differs(numbers[n], ifOtherShare[n])) {
+            figure.why = "a motion alone does not tell the coil from the suspension; measure the current, too";
         } else {
             figure.value = numbers[n];
             figure.standardError = errors[n] > 0.0
