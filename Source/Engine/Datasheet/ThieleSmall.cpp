@@ -3,6 +3,7 @@
 
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/Propagate.h"
 #include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Take/Air.h"
@@ -112,24 +113,6 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
 }
 
 /// Whether a number is another one for a model that could be as well.
-/// The same motion, but for the laws, of a driver with another coil: this many times the resistance, and of what
-/// remains of the damping the coil has this many times its share.
-Model withCoil(Model model, double resistance, double share)
-{
-    auto& Re = model.baseParameter("Re").value;
-    auto& Bl = model.baseParameter("Bl").value;
-    auto& m = model.baseParameter("m").value;
-    auto& Rms = model.baseParameter("Rms").value;
-    const double rate = (Rms + Bl * Bl / Re) / m;
-    Re *= resistance;
-    model.baseParameter("Le").value *= resistance;
-    m *= share / resistance;
-    model.baseParameter("K").value *= share / resistance;
-    Bl *= share;
-    Rms = rate * m - Bl * Bl / Re;
-    return model;
-}
-
 bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); }
 
 }  // namespace

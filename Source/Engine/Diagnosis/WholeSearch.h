@@ -87,8 +87,8 @@ public:
     double lost(const Left& more, const Left& less) const;
 
     FitSummary fit(Model&, const Progress& = {}) const;
-    /// Whether the first two steps of a fit leave so many dB less: near the noise laws are weak, and these steps go most
-    /// of the way.
+    /// Whether the first two steps of a fit leave so many dB less: near the noise laws are weak, and these go most of
+    /// the way.
     bool gainsAtOnce(Model, const Left& before, double dB) const;
     /// From each start of the laws among the newcomers, as what derivatives promise of a start need not come true;
     /// leaves the first one where another leaves 1 dB less.

@@ -100,6 +100,10 @@ bool isSeen(const Model&, std::size_t component);
 /// free.
 Model startModel(const std::vector<ResponseTarget>&, bool electrical, const DriverInfo&);
 
+/// The same motion, but for the inductance and the laws, of a driver with another coil: this many times the resistance,
+/// and this many times the share of the damping Rms + Bl^2/Re. Without a current all of these are as likely.
+Model withCoil(Model, double resistance, double share);
+
 /// The assumptions behind the parameters, in sentences that begin with a blank: a mass held by convention, a motion
 /// used only up to some frequency. Empty if the take determined everything.
 std::string caveatsOf(const Model&, const std::vector<ResponseTarget>& = {});

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -38,18 +39,6 @@ void rescale(Model& model, double mass)
         model.baseParameter(name).value *= ratio;
     if (model.electrical())
         model.baseParameter("Bl").value *= std::sqrt(ratio);
-}
-
-/// The same motion, but for the inductance, of a driver whose coil has this share of the damping Rms + Bl^2/Re.
-void shareDamping(Model& model, double coil)
-{
-    const double Re = model.baseParameter("Re").value, m = model.baseParameter("m").value,
-                 slope = model.baseParameter("Bl").value / m,  // Bl/m is seen, and so are K/m and
-        rate = model.baseParameter("Rms").value / m + slope * slope * m / Re;
-    rescale(model, coil * rate * Re / (slope * slope));
-    const double mass = model.baseParameter("m").value;
-    model.baseParameter("Bl").value = slope * mass;
-    model.baseParameter("Rms").value = (1.0 - coil) * rate * mass;
 }
 
 /// How many times larger the measured response is than the model's.
@@ -244,12 +233,30 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
         rescale(best, typicalMass(f0, driver.coneArea));
         matchSizes(best, sight);
     }
-    constexpr double usualShare = 0.8;
-    if (electrical && !sight.current)
-        shareDamping(best, usualShare);
+    if (electrical && !sight.current) {
+        constexpr double usualShare = 0.8;
+        const double Bl = best.baseParameter("Bl").value, coil = Bl * Bl / best.baseParameter("Re").value;
+        best = withCoil(std::move(best), 1.0, usualShare * (coil + best.baseParameter("Rms").value) / coil);
+    }
     fitResponse(best, even, {60, 1e-8});
     best.name = driver.name;
     return best;
+}
+
+Model withCoil(Model model, double resistance, double share)
+{
+    auto& Re = model.baseParameter("Re").value;
+    auto& Bl = model.baseParameter("Bl").value;
+    auto& m = model.baseParameter("m").value;
+    auto& Rms = model.baseParameter("Rms").value;
+    const double rate = (Rms + Bl * Bl / Re) / m;
+    Re *= resistance;
+    model.baseParameter("Le").value *= resistance;
+    m *= share / resistance;
+    model.baseParameter("K").value *= share / resistance;
+    Bl *= share;
+    Rms = rate * m - Bl * Bl / Re;
+    return model;
 }
 
 std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& targets)

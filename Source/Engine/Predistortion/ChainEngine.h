@@ -30,7 +30,7 @@ public:
 
     virtual void set(const PredistortionControls&) = 0;  ///< new targets; a class ignores those that it lacks
     virtual void turn(bool bends) = 0;                   ///< if off, the predistorter passes the signal unchanged
-    /// @param share  how much of the linear loudspeaker's output is subtracted, 0 to 1; followed smoothly, and within a second
+    /// @param share  how much of the linear loudspeaker's output is subtracted, 0 to 1; followed within a second
     virtual void setLinearShareRemoved(double share) = 0;
 
     /// @param volts   n samples, replaced by the output: V, or the loudspeaker's sound at the same level
