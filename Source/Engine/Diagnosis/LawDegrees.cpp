@@ -4,23 +4,36 @@
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace excursion {
 namespace {
 
-/// Whether laws of a higher degree leave so much less that it pays for their coefficients: what the slopes of fed laws
-/// promise need not come.
-bool paysForItself(const Model& higher, const Model& model, const Record& record,
-                   const std::vector<std::size_t>& sections, const FitOptions& options)
+/// What laws of a higher degree leave less, in units of the cost, and what their coefficients must bring.
+struct Gain {
+    double cost = 0.0;
+    double price = 0.0;
+    double coefficients = 0.0;
+
+    bool pays() const { return cost > price; }
+};
+
+/// None where the higher one runs away; where only the lower one does it gains without end.
+std::optional<Gain> gainOf(const Model& higher, const Model& lower, const Record& record,
+                           const std::vector<std::size_t>& sections, const FitOptions& options)
 {
-    const auto now = quickSum(model, record, sections, options), then = quickSum(higher, record, sections, options);
-    if (!now || !then)
-        return then.has_value();
+    const auto now = quickSum(lower, record, sections, options), then = quickSum(higher, record, sections, options);
+    if (!then)
+        return std::nullopt;
     const double unit = std::max(1.0, then->cost / std::max(1.0, then->rows)),
                  more = static_cast<double>(freeParameters(higher).size())
-                        - static_cast<double>(freeParameters(model).size());
-    return now->cost - then->cost > priceOfCoefficient * unit * more;
+                        - static_cast<double>(freeParameters(lower).size());
+    const double without = now ? now->cost : std::numeric_limits<double>::infinity();
+    return Gain {without - then->cost, priceOfCoefficient * unit * more, more};
 }
 
 }  // namespace
@@ -37,7 +50,10 @@ std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, cons
             break;
         const auto part = progress.part(static_cast<double>(n) / mostRaises, (n + 1.0) / mostRaises);
         const auto next = fitFed(higher, record, sections, options, part);
-        if (!next.usable() || !paysForItself(higher, model, record, sections, options))
+        if (!next.usable())
+            break;
+        // What the slopes of fed laws promise need not come.
+        if (const auto gain = gainOf(higher, model, record, sections, options); !gain || !gain->pays())
             break;
         model = std::move(higher);
         last = next;
@@ -45,20 +61,62 @@ std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, cons
     return last;
 }
 
-std::optional<FitSummary> lowerAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                        const FitOptions& options, const Progress& progress)
+Model withLowerLaw(const Model& model, std::size_t k, int by)
 {
-    std::optional<FitSummary> last;
-    for (const auto k : tooHigh(model)) {
-        constexpr int by = 4;
-        auto lower = withDegree(model, k, model.components[k].operatingRange.degree - by);
-        const auto next = fitFed(lower, record, sections, options, progress);
-        if (!next.usable() || paysForItself(model, lower, record, sections, options))
+    const auto highest = highestCoefficients(model, k, by);
+    auto lower = withDegree(model, k, model.components[k].operatingRange.degree - by);
+    const auto all = parametersOf(model);
+    std::vector<Eigen::Index> rest;
+    for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(all.size()); ++j)
+        if (std::find(highest.begin(), highest.end(), j) == highest.end())
+            rest.push_back(j);
+    const auto& C = model.covariance;
+    std::vector<Eigen::Index> told = highest;
+    std::erase_if(told, [&](Eigen::Index j) { return C(j, j) == 0.0; });
+    const Eigen::VectorXd theta = parameterVector(model);
+    const Eigen::MatrixXd C_rb = C(rest, told);
+    const Eigen::LDLT<Eigen::MatrixXd> C_bb(Eigen::MatrixXd(C(told, told)));
+    const Eigen::VectorXd moved = Eigen::VectorXd(theta(rest)) - C_rb * C_bb.solve(Eigen::VectorXd(theta(told)));
+    lower.covariance = Eigen::MatrixXd(C(rest, rest)) - C_rb * C_bb.solve(C_rb.transpose());
+    const auto left = parametersOf(lower);
+    for (std::size_t j = 0; j < left.size(); ++j) {
+        const auto row = static_cast<Eigen::Index>(j);
+        auto& p = *left[j];
+        const auto& before = *all[static_cast<std::size_t>(rest[j])];
+        p.free = before.free;
+        p.standardError = before.standardError;
+        if (!p.free || lower.covariance(row, row) == 0.0)  // not told by the fit
             continue;
-        model = std::move(lower);
-        last = next;
+        p.value = std::clamp(moved[row], p.lower, p.upper);
+        p.standardError = std::sqrt(lower.covariance(row, row));
     }
-    return last;
+    return lower;
+}
+
+void lowerAsItPays(Model& model, FitSummary& summary, const Record& record, const std::vector<std::size_t>& sections,
+                   FitOptions options)
+{
+    options.fedGradient = true;  // costs of simulations
+    options.substeps = summary.substeps;
+    std::vector<std::size_t> refused;
+    const auto next = [&]() -> std::optional<std::size_t> {
+        for (const auto k : tooHigh(model))
+            if (std::find(refused.begin(), refused.end(), k) == refused.end())
+                return k;
+        return std::nullopt;
+    };
+    while (const auto k = next()) {
+        auto lower = withLowerLaw(model, *k);
+        const auto gain = gainOf(model, lower, record, sections, options);
+        if (!gain || gain->pays()) {
+            refused.push_back(*k);
+            continue;
+        }
+        const double freedom = summary.finalCost / summary.chiSquaredPerValue + gain->coefficients;
+        summary.finalCost += gain->cost;
+        summary.chiSquaredPerValue = summary.finalCost / freedom;
+        model = std::move(lower);
+    }
 }
 
 }  // namespace excursion

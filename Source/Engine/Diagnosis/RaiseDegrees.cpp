@@ -66,26 +66,32 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     return raised;
 }
 
+std::vector<Eigen::Index> highestCoefficients(const Model& model, std::size_t k, int by)
+{
+    Eigen::Index first = 0;
+    for (std::size_t n = 0; n < k; ++n)
+        first += static_cast<Eigen::Index>(model.components[n].parameters.size());
+    const auto& component = model.components[k];
+    const auto lower = withDegree(model, k, component.operatingRange.degree - by).components[k].parameters;
+    std::vector<Eigen::Index> highest;
+    for (std::size_t j = 0; j < component.parameters.size(); ++j)
+        if (std::none_of(lower.begin(), lower.end(),
+                         [&](const Parameter& p) { return p.name == component.parameters[j].name; }))
+            highest.push_back(first + static_cast<Eigen::Index>(j));
+    return highest;
+}
+
 std::vector<std::size_t> tooHigh(const Model& model, int by)
 {
     std::vector<std::size_t> result;
     if (model.covariance.size() == 0)
         return result;
-    Eigen::Index place = 0;
-    for (std::size_t k = 0; k < model.components.size(); ++k) {
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
-        const auto first = place;
-        place += static_cast<Eigen::Index>(component.parameters.size());
-        const int degree = component.operatingRange.degree;
-        if (k == 0 || !component.effect->law() || degree - by < OperatingRange {}.degree)
+        if (!component.effect->law() || component.operatingRange.degree - by < OperatingRange {}.degree)
             continue;
-        const auto lower = withDegree(model, k, degree - by).components[k].parameters;
-        std::vector<Eigen::Index> highest;
-        for (std::size_t j = 0; j < component.parameters.size(); ++j)
-            if (component.parameters[j].free && std::none_of(lower.begin(), lower.end(), [&](const Parameter& p) {
-                    return p.name == component.parameters[j].name;
-                }))
-                highest.push_back(first + static_cast<Eigen::Index>(j));
+        auto highest = highestCoefficients(model, k, by);
+        std::erase_if(highest, [&](Eigen::Index j) { return model.covariance(j, j) == 0.0; });  // not told by the fit
         if (highest.empty())
             continue;
         const Eigen::VectorXd theta = parameterVector(model)(highest);

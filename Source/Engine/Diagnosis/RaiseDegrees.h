@@ -19,6 +19,9 @@ inline constexpr double priceOfCoefficient = 2.4;
 /// @param share  of the cost by which each must also lower it
 std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, double share = 0.0, int by = 4);
 
+/// Places in parameterVector() of what law k has by its `by` highest degrees.
+std::vector<Eigen::Index> highestCoefficients(const Model&, std::size_t k, int by = 4);
+
 /// The laws whose highest coefficients, as many as a raise brings, are worth less than their price at the model's last
 /// fit,
 ///     theta^T C^-1 theta <= price * count   with their block C of the model's covariance,

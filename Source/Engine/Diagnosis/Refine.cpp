@@ -42,7 +42,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
-        LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-7};
+        LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-7};
         if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
             constexpr double noise = 0.5;  // of the cost, half the sum of squares
             alongTheFloor.maximumIterations = 15;
@@ -83,18 +83,9 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
-    const auto lower = [&](const Progress& part) {
-        chooseResiduals(quick, score, model, record, sections);
-        return lowerAsItPays(model, record, sections, quick, part).has_value();
-    };
-    // The last fit is dear, so it should have the coefficients that stay. A lower law is compared with one that was
-    // fitted as long.
-    if (summary.onlyNoise && summary.chiSquaredPerValue < atNoise && !tooHigh(model).empty()
-        && fitFed(model, record, sections, quick, progress.part(0.75, 0.76)).usable())
-        lower(progress.part(0.76, 0.77));
-    summary = fitBySimulation(model, record, chosen, false, progress.part(0.77, 0.95));
-    if (!tooHigh(model).empty() && lower(progress.part(0.95, 0.97)))
-        summary = fitBySimulation(model, record, chosen, false, progress.part(0.97, 1.0));
+    summary = fitBySimulation(model, record, chosen, false, progress.part(0.77, 1.0));
+    if (summary.usable())
+        lowerAsItPays(model, summary, record, sections, chosen);
     return summary;
 }
 

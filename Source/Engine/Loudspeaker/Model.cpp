@@ -188,8 +188,10 @@ Model withDegree(Model model, std::size_t component, int degree)
     c.parameters = c.effect->parameters(c.operatingRange);
     for (auto& p : c.parameters)
         for (const auto& old : before)
-            if (old.name == p.name)
+            if (old.name == p.name) {
                 p.value = old.value;
+                p.free = old.free;
+            }
     model.covariance.resize(0, 0);
     return model;
 }

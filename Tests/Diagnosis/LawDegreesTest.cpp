@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "SeedDriver.h"
+
+#include "Engine/Diagnosis/LawDegrees.h"
+#include "Engine/Diagnosis/RaiseDegrees.h"
+#include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <utility>
+
+using namespace excursion;
+
+namespace {
+
+/// A take of a bent suspension, and a model of it with a law of this degree, fitted by simulation.
+struct Bent {
+    Record record;
+    Model model;
+    FitSummary summary;
+    FitOptions options;
+
+    Bent(const char* effect, int degree, double strength)
+        : record(makeRecord(seedTake({{effect, strength}}))), model(startModel(record))
+    {
+        adapt(record, model);
+        model = withEffect(std::move(model), effectNamed(effect), visitedRange(model, record, degree));
+        fitFurther();
+        fitFurther();  // priors weigh as much as noise now, where the first fit began far above it
+    }
+
+    void fitFurther()
+    {
+        options.substeps = 2;
+        options.exactGradient = true;
+        options.search = {60, 1e-9};
+        summary = fit(model, record, estimationSections(record), options);
+        REQUIRE(summary.usable());
+    }
+};
+
+}  // namespace
+
+TEST_CASE("A law that gives coefficients back needs no other fit", "[diagnosis]")
+{
+    Bent high("stiffness", 10, 0.2);
+    const auto before = high.summary;
+    REQUIRE(tooHigh(high.model) == std::vector<std::size_t> {1});
+    CHECK(highestCoefficients(high.model, 1).size() == 4);
+
+    auto refitted = high;
+    refitted.model = withDegree(std::move(refitted.model), 1, 6);
+    refitted.fitFurther();
+
+    const auto lower = withLowerLaw(high.model, 1);
+    CHECK(lower.components[1].operatingRange.degree == 6);
+    REQUIRE(parameterVector(lower).size() == parameterVector(refitted.model).size());
+    const auto one = parametersOf(lower), other = parametersOf(std::as_const(refitted.model));
+    for (std::size_t k = 0; k < one.size(); ++k) {
+        INFO(one[k]->name << ": " << one[k]->value << " and " << other[k]->value << " +- " << other[k]->standardError);
+        CHECK(one[k]->free == other[k]->free);
+        if (!(other[k]->standardError > 0.0))
+            continue;
+        CHECK(std::abs(one[k]->value - other[k]->value) < 0.1 * other[k]->standardError);
+        CHECK(one[k]->standardError == Approx(other[k]->standardError).epsilon(0.02));
+    }
+
+    lowerAsItPays(high.model, high.summary, high.record, estimationSections(high.record), high.options);
+    CHECK(high.model.components[1].operatingRange.degree == 6);
+    CHECK(high.summary.finalCost == Approx(refitted.summary.finalCost).epsilon(1e-5));
+    CHECK(high.summary.finalCost > before.finalCost);
+    CHECK(high.summary.chiSquaredPerValue == Approx(refitted.summary.chiSquaredPerValue).epsilon(1e-5));
+}
+
+TEST_CASE("A law keeps coefficients that a simulation misses, whatever the covariance says", "[diagnosis]")
+{
+    Bent strong("force-factor", 10, 0.6);
+    REQUIRE(tooHigh(strong.model).empty());
+    strong.model.covariance *= 1e8;  // as if the fit knew nothing
+    REQUIRE(tooHigh(strong.model) == std::vector<std::size_t> {1});
+    const auto before = strong.model;
+    lowerAsItPays(strong.model, strong.summary, strong.record, estimationSections(strong.record), strong.options);
+    CHECK(strong.model.components[1].operatingRange.degree == 10);
+    CHECK(parameterVector(strong.model) == parameterVector(before));
+}
