@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/LeastSquares.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Validity.h"
 
@@ -21,7 +22,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int largestSteps = 40;
 
 void require(const FrequencyData& data, const DelayedFitOptions& options)
 {
@@ -111,43 +111,39 @@ double standardErrorOf(const DelayColumn& column, const PartialFractionFit& fit,
     return free > 0.0 && length > 0.0 ? std::sqrt(column.residual / free) / length : infinite;
 }
 
-/// Gauss-Newton over the delay, the poles refined after every step.
+/// The delay within its range that leaves least, with the poles refined wherever it is tried.
 void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOptions& options, double least, double most)
 {
     const auto refinement = stableRefinement(options);
     const double unit = 1.0 / (2.0 * std::numbers::pi * data.frequency.back());
-    while (result.iterations < largestSteps) {
-        const auto late = delayed(data, result.delay);
-        const auto column = delayColumn(result.fit, late);
-        result.standardError = standardErrorOf(column, result.fit, data);
-        if (!(std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines())))) {
-            result.end(Termination::undetermined);
-            return;
+    auto here = result.fit;  // at the delay that was tried last
+    double tried = result.delay;
+    const auto evaluate = [&](const Eigen::VectorXd& theta, bool, NormalEquations& sum) {
+        if (const double delay = unit * theta[0]; delay != tried) {
+            here = refinePoles(result.fit.sections, delayed(data, delay), refinement).fit;
+            tried = delay;
         }
-        double step = -unit * column.along / column.length;
-        if (std::abs(step) < std::max(1e-3 * result.standardError, 1e-10 * unit)) {
-            result.end(Termination::valuesSettled);
-            return;
+        const auto column = delayColumn(here, delayed(data, tried));
+        sum.cost = column.residual;
+        sum.N = MatrixXd::Constant(1, 1, column.length * column.length);
+        sum.g = Eigen::VectorXd::Constant(1, column.length * column.along);
+        if (here.cost <= result.fit.cost) {
+            result.fit = here;
+            result.delay = tried;
         }
-        ++result.iterations;
-        bool accepted = false;
-        for (int attempt = 0; attempt < 8 && !accepted; ++attempt, step *= 0.25) {
-            const double delay = std::clamp(result.delay + step, least, most);
-            if (delay == result.delay)
-                break;
-            auto moved = refinePoles(result.fit.sections, delayed(data, delay), refinement).fit;
-            if (moved.cost < result.fit.cost) {
-                result.fit = std::move(moved);
-                result.delay = delay;
-                accepted = true;
-            }
-        }
-        if (!accepted) {
-            result.end(Termination::noBetterStep);
-            return;
-        }
-    }
-    result.end(Termination::maximumIterations);
+        return std::isfinite(sum.cost);
+    };
+    LeastSquaresOptions search;
+    search.maximumIterations = 40;
+    search.costTolerance = 1e-9;  // a thousandth of the standard error, squared, beside as many lines
+    Eigen::VectorXd theta = Eigen::VectorXd::Constant(1, result.delay / unit);
+    const Eigen::VectorXd lower = Eigen::VectorXd::Constant(1, least / unit),
+                          upper = Eigen::VectorXd::Constant(1, most / unit);
+    static_cast<SearchSummary&>(result) = minimize(evaluate, theta, lower, upper, search);
+    const auto column = delayColumn(result.fit, delayed(data, result.delay));
+    result.standardError = standardErrorOf(column, result.fit, data);
+    if (!(std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines()))))
+        result.end(Termination::undetermined);
 }
 
 }  // namespace
@@ -224,8 +220,9 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
         throw Error(Error::Kind::numerical,
                     "No stable model of order " + std::to_string(options.order) + " was found at any delay.");
     progress.at(0.8, "fitting the delay");
-    result.initialCost = result.fit.cost;
+    const double initialCost = result.fit.cost;
     descend(result, data, options, least, most);
+    result.initialCost = initialCost;
     result.finalCost = result.fit.cost;
     result.atEdge = (best == 0 || best + 1 == result.scanned.size()) && (result.delay == least || result.delay == most);
     if (result.atEdge)
