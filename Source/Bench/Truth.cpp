@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Bench/Truth.h"
+#include "Engine/Document/DocumentFormat.h"
 
 #include <nlohmann/json.hpp>
 
@@ -100,7 +101,7 @@ nlohmann::ordered_json truthOf(const Draw& draw)
 {
     const auto& speaker = draw.speaker;
     const auto& visited = draw.visited;
-    Json truth {{"format", "excursion-truth"}, {"version", 1}};
+    Json truth = DocumentFormat {"excursion-truth"}.with();
     truth["driver"] = {{"class", draw.driver}, {"Re", speaker.Re},   {"Le", speaker.Le}, {"Bl", speaker.Bl},
                        {"m", speaker.m},       {"Rms", speaker.Rms}, {"K", speaker.K},   {"coneArea", speaker.coneArea},
                        {"xmax", speaker.xmax}};

@@ -6,6 +6,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -86,7 +87,7 @@ void run(const AdaptArguments& options, Terminal& terminal)
 {
     requireFilePlace(options.out);
     const auto model = readModel(options.model);
-    nlohmann::ordered_json document {{"format", "excursion-adapt"}, {"version", 1}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-adapt"}.with();
     const auto open = openTake(options.take);
     requireSameKind(model, seenIn(open.take.either()));
     if (!open.take.report().fitForUse())

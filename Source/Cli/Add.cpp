@@ -9,6 +9,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -108,7 +109,7 @@ void run(const AddArguments& options, Terminal& terminal)
     const auto& effect = effectNamed(options.effect);
     requireFilePlace(options.out);
     const auto model = readModel(options.model);
-    nlohmann::ordered_json document {{"format", "excursion-add"}, {"version", 1}, {"added", effect.id()}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-add"}.with({{"added", effect.id()}});
     const auto open = openTake(options.take);
     requireSameKind(model, seenIn(open.take.either()));
     requireEffects({effect.id()}, open.take);

@@ -227,7 +227,7 @@ Json documentOf(const Frf& frf, const std::string& take, std::string_view input,
         re.push_back(value.real());
         im.push_back(value.imag());
     }
-    Json document {{"format", "excursion-bla"}, {"version", 1}, {"take", take}, {"input", input}, {"output", output}};
+    Json document = blaFormat.with({{"take", take}, {"input", input}, {"output", output}});
     document["frequency"] = numbersOrNulls(frf.frequency);
     document["re"] = numbersOrNulls(re);
     document["im"] = numbersOrNulls(im);

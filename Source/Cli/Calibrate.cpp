@@ -3,6 +3,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Import/Calibration.h"
@@ -120,17 +121,15 @@ void run(const CalibrateArguments& a, Terminal& terminal)
                  + " %; the error of the meter or calibrator that told its level comes on top.");
     terminal.say((merged ? "Wrote channel " : "Wrote " + a.out + " with channel ") + std::to_string(a.channel)
                  + (merged ? " into " + a.out : "") + ".");
-    terminal.document({{"format", "excursion-calibrate"},
-                       {"version", 1},
-                       {"file", a.file},
-                       {"channel", a.channel},
-                       {"frequency", tone.frequency},
-                       {"rms", tone.rms},
-                       {"relativeError", tone.relativeError},
-                       {"noiseDb", tone.noiseDb},
-                       {"begin", tone.begin},
-                       {"end", tone.end},
-                       {"calibration", document}});
+    terminal.document(DocumentFormat {"excursion-calibrate"}.with({{"file", a.file},
+                                                                   {"channel", a.channel},
+                                                                   {"frequency", tone.frequency},
+                                                                   {"rms", tone.rms},
+                                                                   {"relativeError", tone.relativeError},
+                                                                   {"noiseDb", tone.noiseDb},
+                                                                   {"begin", tone.begin},
+                                                                   {"end", tone.end},
+                                                                   {"calibration", document}}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
+#include "Engine/Document/DocumentFormat.h"
 
 #include <nlohmann/json.hpp>
 
@@ -37,11 +38,8 @@ void put(Json& json, const char* key, const std::optional<double>& value)
 
 nlohmann::ordered_json checkJson(const CheckReport& report, const std::string& file, double sampleRate)
 {
-    nlohmann::ordered_json document {{"format", "excursion-check"},
-                                     {"version", 1},
-                                     {"take", file},
-                                     {"fitForUse", report.fitForUse()},
-                                     {"verdict", report.verdict()}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-check"}.with(
+        {{"take", file}, {"fitForUse", report.fitForUse()}, {"verdict", report.verdict()}});
     auto& channels = document["channels"] = nlohmann::ordered_json::array();
     for (const auto& c : report.channels) {
         nlohmann::ordered_json channel {

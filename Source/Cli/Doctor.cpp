@@ -2,6 +2,7 @@
 #include "Audio/Stream.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 
@@ -183,7 +184,7 @@ std::vector<Finding> examine()
 
 void run(Terminal& terminal)
 {
-    nlohmann::ordered_json document {{"format", "excursion-doctor"}, {"version", 1}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-doctor"}.with();
     document["findings"] = nlohmann::ordered_json::array();
     std::vector<std::vector<std::string>> rows;
     for (const auto& finding : examine()) {

@@ -2,6 +2,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 
@@ -80,7 +81,7 @@ void run(const std::vector<std::string>& wanted, Terminal& terminal)
         effects.push_back(&effectNamed(id));
     if (effects.empty())
         effects = catalogue();
-    nlohmann::ordered_json document {{"format", "excursion-effects"}, {"version", 1}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-effects"}.with();
     document["effects"] = nlohmann::ordered_json::array();
     for (const auto* effect : effects) {
         print(*effect, terminal);

@@ -2,6 +2,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Error.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/ExcitationPlan.h"
@@ -65,19 +66,17 @@ void runSweeps(ExciteArguments options, Terminal& terminal)
                  + (sweep.repeats > 1 ? std::to_string(sweep.repeats) + " times each, " : "") + "with "
                  + significant(sweep.silence) + " s of silence behind them. A sample of 1.0 stands for "
                  + significant(voltage.fullScale) + " V at the loudspeaker: set the amplifier's gain so.");
-    terminal.document({{"format", "excursion-excite"},
-                       {"version", 1},
-                       {"folder", options.out},
-                       {"audio", "excitation.wav"},
-                       {"plan", "plan.json"},
-                       {"kind", "sweep"},
-                       {"samples", plan.take.length()},
-                       {"seconds", seconds},
-                       {"sweepSeconds", plan.sweep->seconds},
-                       {"repeats", sweep.repeats},
-                       {"fullScale", voltage.fullScale},
-                       {"peak", peak},
-                       {"levels", sweep.levels}});
+    terminal.document(DocumentFormat {"excursion-excite"}.with({{"folder", options.out},
+                                                                {"audio", "excitation.wav"},
+                                                                {"plan", "plan.json"},
+                                                                {"kind", "sweep"},
+                                                                {"samples", plan.take.length()},
+                                                                {"seconds", seconds},
+                                                                {"sweepSeconds", plan.sweep->seconds},
+                                                                {"repeats", sweep.repeats},
+                                                                {"fullScale", voltage.fullScale},
+                                                                {"peak", peak},
+                                                                {"levels", sweep.levels}}));
 }
 
 void run(ExciteArguments options, Terminal& terminal)
@@ -109,18 +108,17 @@ void run(ExciteArguments options, Terminal& terminal)
     terminal.say(std::to_string(e.lines.size()) + " lines, " + fixed(take.sampleRate / e.period, 3)
                  + " Hz apart at the least. A sample of 1.0 stands for " + significant(voltage.fullScale)
                  + " V at the loudspeaker: set the amplifier's gain so.");
-    terminal.document({{"format", "excursion-excite"},
-                       {"version", 1},
-                       {"folder", options.out},
-                       {"audio", "excitation.wav"},
-                       {"plan", "plan.json"},
-                       {"samples", e.totalSamples()},
-                       {"seconds", seconds},
-                       {"fullScale", voltage.fullScale},
-                       {"peak", peak},
-                       {"levels", e.levels},
-                       {"lines", e.lines.size()},
-                       {"detectionLines", oddDetectionLines(e.lines).size()}});
+    terminal.document(
+        DocumentFormat {"excursion-excite"}.with({{"folder", options.out},
+                                                  {"audio", "excitation.wav"},
+                                                  {"plan", "plan.json"},
+                                                  {"samples", e.totalSamples()},
+                                                  {"seconds", seconds},
+                                                  {"fullScale", voltage.fullScale},
+                                                  {"peak", peak},
+                                                  {"levels", e.levels},
+                                                  {"lines", e.lines.size()},
+                                                  {"detectionLines", oddDetectionLines(e.lines).size()}}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -27,7 +28,7 @@ void run(const FitArguments& options, Terminal& terminal)
     for (const auto& id : options.effects)
         effectNamed(id);  // a misspelt name is told before any work
     requireFilePlace(options.out);
-    nlohmann::ordered_json document {{"format", "excursion-fit"}, {"version", 1}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-fit"}.with();
     const auto open = openTake(options.take);
     requireEffects(options.effects, open.take);
     if (!open.take.report().fitForUse())

@@ -6,6 +6,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Fractional/FractionalIdentificationFile.h"
 #include "Engine/GreyBox/MixedImpedance.h"
@@ -116,7 +117,7 @@ void runMixed(const IdentifyArguments& options, const OpenResponse& open, const 
          {"motional", "K = Bl^2/m", "ohm/s"},
          {"resonance", "f0", "Hz"},
          {"quality", "Q", "1"}}};
-    Json document {{"format", "excursion-mixed-impedance"}, {"version", 1}, {"source", options.response.path}};
+    Json document = DocumentFormat {"excursion-mixed-impedance"}.with({{"source", options.response.path}});
     document["lines"] = data.lines();
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < names.size(); ++k) {

@@ -2,6 +2,7 @@
 #include "Cli/ImportRecording.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Import/ReadTake.h"
 
 #include "Engine/Document/TextFile.h"
@@ -73,14 +74,12 @@ void describe(const Measurement& take, Terminal& terminal, const std::string& ou
     terminal.say("Wrote the take " + out + ": " + std::to_string(take.length()) + " samples at "
                  + significant(take.sampleRate, 8) + " Hz.");
     terminal.table({"channel", "unit", "peak", "full scale"}, rows);
-    terminal.document({{"format", "excursion-import"},
-                       {"version", 1},
-                       {"take", out},
-                       {"kind", "samples"},
-                       {"sampleRate", take.sampleRate},
-                       {"samples", take.length()},
-                       {"channels", channels},
-                       {"remarks", take.remarks}});
+    terminal.document(DocumentFormat {"excursion-import"}.with({{"take", out},
+                                                                {"kind", "samples"},
+                                                                {"sampleRate", take.sampleRate},
+                                                                {"samples", take.length()},
+                                                                {"channels", channels},
+                                                                {"remarks", take.remarks}}));
 }
 
 /// A frequency response is a take as one CSV of spectra.
@@ -104,12 +103,8 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
         terminal.say(wrapped("remark  " + remark, 8));
     terminal.say("Wrote the spectra " + out + ": " + std::to_string(spectra.frequency.size()) + " frequencies from "
                  + significant(spectra.frequency.front()) + " to " + significant(spectra.frequency.back()) + " Hz.");
-    terminal.document({{"format", "excursion-import"},
-                       {"version", 1},
-                       {"take", out},
-                       {"kind", "spectra"},
-                       {"frequencies", spectra.frequency.size()},
-                       {"remarks", spectra.remarks}});
+    terminal.document(DocumentFormat {"excursion-import"}.with(
+        {{"take", out}, {"kind", "spectra"}, {"frequencies", spectra.frequency.size()}, {"remarks", spectra.remarks}}));
 }
 
 Take read(const ImportArguments& options)

@@ -3,6 +3,7 @@
 
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
@@ -132,15 +133,13 @@ nlohmann::ordered_json importJson(const ImportedRecording& imported, bool aligne
                             {"assumed", channel.assumed}});
     for (const auto& file : imported.files)
         files.push_back(documentOf(file, aligned));
-    return {{"format", "excursion-import"},
-            {"version", 1},
-            {"take", out},
-            {"kind", "recording"},
-            {"sampleRate", take.sampleRate},
-            {"samples", take.length()},
-            {"channels", channels},
-            {"files", files},
-            {"remarks", imported.remarks}};
+    return DocumentFormat {"excursion-import"}.with({{"take", out},
+                                                     {"kind", "recording"},
+                                                     {"sampleRate", take.sampleRate},
+                                                     {"samples", take.length()},
+                                                     {"channels", channels},
+                                                     {"files", files},
+                                                     {"remarks", imported.remarks}});
 }
 
 bool isRecording(const std::string& file)

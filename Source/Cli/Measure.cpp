@@ -8,6 +8,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Check/TakeCheck.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
@@ -40,7 +41,7 @@ void listDevices(Terminal& terminal)
 {
     const auto system = audio::openSystem();
     const auto devices = system->devices();
-    auto document = nlohmann::ordered_json {{"format", "excursion-devices"}, {"version", 1}};
+    auto document = DocumentFormat {"excursion-devices"}.with();
     document["devices"] = nlohmann::ordered_json::array();
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < devices.size(); ++k) {
@@ -254,15 +255,14 @@ void run(const MeasureArguments& a, Terminal& terminal)
     sayImported(imported, true, a.recording.out, terminal);
     terminal.say("");
     sayCheck(report, terminal);
-    terminal.document({{"format", "excursion-measure"},
-                       {"version", 1},
-                       {"take", a.recording.out},
-                       {"device", {{"backend", device.backend}, {"name", device.name}}},
-                       {"sampleRate", procedure.sampleRate},
-                       {"attempts", measured.attempts},
-                       {"recording", a.keep.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(a.keep)},
-                       {"import", importJson(imported, true, a.recording.out)},
-                       {"check", checked}});
+    terminal.document(DocumentFormat {"excursion-measure"}.with(
+        {{"take", a.recording.out},
+         {"device", {{"backend", device.backend}, {"name", device.name}}},
+         {"sampleRate", procedure.sampleRate},
+         {"attempts", measured.attempts},
+         {"recording", a.keep.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(a.keep)},
+         {"import", importJson(imported, true, a.recording.out)},
+         {"check", checked}}));
     if (!report.fitForUse())
         terminal.answer = 1;
 }

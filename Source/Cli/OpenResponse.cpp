@@ -15,7 +15,7 @@ OpenResponse fromDocument(const std::string& path)
 {
     const auto document = readJson(path);
     const JsonField field(document, "", path);
-    field.requireFormat("excursion-bla", 1);
+    blaFormat.require(field);
     OpenResponse open;
     open.output = field.at("output").text();
     open.input = field.at("input").text();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Estimate/Frf.h"
 #include "Engine/Take/Measurement.h"
 
@@ -17,6 +18,9 @@ struct ResponseChoice {
     std::string output, input;
     int level = -1;  ///< of a take with levels; below 0: the loudest
 };
+
+/// Of the document of `bla`.
+inline constexpr DocumentFormat blaFormat {"excursion-bla"};
 
 struct OpenResponse {
     Frf frf;

@@ -5,6 +5,7 @@
 #include "Cli/OpenDriver.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Import/ReadTake.h"
 
 #include "Engine/Check/PreparedTake.h"
@@ -158,8 +159,7 @@ void runOnTake(const ParametersArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage,
                     "'" + options.from + "' is a take: say with --zma or --frd what to write, or fit a model to it.");
     const PreparedTake take(readMeasurement(options.from));
-    Json document {
-        {"format", "excursion-parameters"}, {"version", 1}, {"take", options.from}, {"wrote", Json::array()}};
+    Json document = DocumentFormat {"excursion-parameters"}.with({{"take", options.from}, {"wrote", Json::array()}});
     writeCurves(options, nullptr, take.inTime(), document["wrote"], terminal);
     sayWritten(document["wrote"], terminal);
     terminal.document(document);
@@ -181,7 +181,7 @@ void run(const ParametersArguments& options, Terminal& terminal)
     const auto& inductance = options.inductanceBand;
     const auto sheet = datasheetOf(given, inductance.empty() ? 0.0 : inductance[0],
                                    inductance.empty() ? 0.0 : inductance[1], options.points);
-    Json document {{"format", "excursion-parameters"}, {"version", 1}, {"model", options.from}};
+    Json document = DocumentFormat {"excursion-parameters"}.with({{"model", options.from}});
     document.update(toJson(sheet));
     auto written = Json::array();
     writeCurves(options, &given, nullptr, written, terminal);  // may refuse, and so comes first

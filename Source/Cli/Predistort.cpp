@@ -5,6 +5,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/BlackBox/ModelDocument.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
@@ -30,15 +31,13 @@ void publish(const Wav& bent, const std::string& out)
 
 nlohmann::ordered_json documentOf(const PredistortArguments& options, const Wav& wav)
 {
-    return {{"format", "excursion-predistort"},
-            {"version", 1},
-            {"model", options.model},
-            {"input", options.input},
-            {"output", options.out},
-            {"sampleRate", wav.sampleRate},
-            {"samples", wav.channels.front().size()},
-            {"fullScale", options.fullScale},
-            {"amount", options.amount}};
+    return DocumentFormat {"excursion-predistort"}.with({{"model", options.model},
+                                                         {"input", options.input},
+                                                         {"output", options.out},
+                                                         {"sampleRate", wav.sampleRate},
+                                                         {"samples", wav.channels.front().size()},
+                                                         {"fullScale", options.fullScale},
+                                                         {"amount", options.amount}});
 }
 
 void sayLoudest(const PredistortArguments& options, double loudest, Terminal& terminal)

@@ -5,6 +5,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/IdentificationFile.h"
@@ -129,8 +130,7 @@ void run(const ReduceArguments& options, Terminal& terminal)
     requireFilePlace(options.out);
     auto open = openModel(options.model);
     const auto& model = open.named.model;
-    Json document {
-        {"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", model.order()}};
+    Json document = DocumentFormat {"excursion-reduction"}.with({{"source", options.model}, {"from", model.order()}});
     if (options.rippleDb > 0.0)
         takeOut(options, open, document, terminal);
     else if (options.response.path.empty())

@@ -4,6 +4,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/LadderFile.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Error.h"
 #include "Report/ModelReport.h"
 #include "Report/Report.h"
@@ -24,12 +25,10 @@ void drawLadder(const std::string& folder, Terminal& terminal)
     requireFilePlace(page);
     writeReport(file, page);
     terminal.say("Wrote " + page + ".");
-    terminal.document({{"format", "excursion-report"},
-                       {"version", 1},
-                       {"ladder", ladder},
-                       {"report", page},
-                       {"verdict", name(file.ladder.verdict)},
-                       {"sentence", file.ladder.sentence}});
+    terminal.document(DocumentFormat {"excursion-report"}.with({{"ladder", ladder},
+                                                                {"report", page},
+                                                                {"verdict", name(file.ladder.verdict)},
+                                                                {"sentence", file.ladder.sentence}}));
 }
 
 void drawDocument(const std::string& path, Terminal& terminal)
@@ -45,7 +44,7 @@ void drawDocument(const std::string& path, Terminal& terminal)
     requireFilePlace(page);
     writeDocumentPage(JsonField(document, "", path), page);
     terminal.say("Wrote " + page + ".");
-    terminal.document({{"format", "excursion-report"}, {"version", 1}, {"document", path}, {"report", page}});
+    terminal.document(DocumentFormat {"excursion-report"}.with({{"document", path}, {"report", page}}));
 }
 
 void run(const std::string& place, Terminal& terminal)

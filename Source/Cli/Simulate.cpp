@@ -3,6 +3,7 @@
 #include "Cli/KnownMotion.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Import/ReadTake.h"
 
 #include "Engine/BlackBox/ModelDocument.h"
@@ -137,10 +138,11 @@ void runDocument(const SimulateArguments& options, const ModelDocument& model, T
         channel.fullScale = peak;
     take.channels.push_back(std::move(channel));
     writeSweepTake(result, options.out);
-    nlohmann::ordered_json document {
-        {"format", "excursion-simulate"}, {"version", 1},        {"model", options.model},
-        {"input", options.input},         {"take", options.out}, {"sampleRate", take.sampleRate},
-        {"samples", take.length()}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-simulate"}.with({{"model", options.model},
+                                                                                  {"input", options.input},
+                                                                                  {"take", options.out},
+                                                                                  {"sampleRate", take.sampleRate},
+                                                                                  {"samples", take.length()}});
     document["channels"] = tellChannels(take, terminal);
     sayTake(options, take, terminal);
     terminal.document(document);
@@ -186,17 +188,16 @@ void run(const SimulateArguments& options, Terminal& terminal)
     take.excitation = given.excitation;
     writeSweepTake({take, given.sweep}, options.out);
 
-    nlohmann::ordered_json document {{"format", "excursion-simulate"},
-                                     {"version", 1},
-                                     {"model", options.model},
-                                     {"input", options.input},
-                                     {"take", options.out},
-                                     {"sampleRate", take.sampleRate},
-                                     {"samples", take.length()},
-                                     {"substeps", summary.substeps},
-                                     {"accuracy", summary.accuracy},
-                                     {"tolerance", options.simulation.tolerance},
-                                     {"converged", summary.converged}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-simulate"}.with(
+        {{"model", options.model},
+         {"input", options.input},
+         {"take", options.out},
+         {"sampleRate", take.sampleRate},
+         {"samples", take.length()},
+         {"substeps", summary.substeps},
+         {"accuracy", summary.accuracy},
+         {"tolerance", options.simulation.tolerance},
+         {"converged", summary.converged}});
     document["channels"] = tellChannels(take, terminal);
     terminal.say(std::to_string(summary.substeps) + (summary.substeps == 1 ? " step" : " steps")
                  + " a sample; half the step changes the result by "

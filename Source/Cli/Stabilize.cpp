@@ -4,6 +4,7 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Linear/Response.h"
 
 #include "Engine/Document/JsonText.h"
@@ -107,8 +108,8 @@ void run(const StabilizeArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage,
                     "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
     const auto data = dataFor(options, open);
-    Json document {
-        {"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
+    Json document = DocumentFormat {"excursion-stabilization"}.with(
+        {{"source", options.model}, {"method", options.method}});
     document["response"] = textOrNull(options.response.path);
     const auto result = stabilizeBy(options, open, data, terminal);
     if (result.parts)

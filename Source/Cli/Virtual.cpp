@@ -2,6 +2,7 @@
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Import/ReadTake.h"
 
 #include "Bench/Bench.h"
@@ -127,13 +128,12 @@ void run(const VirtualArguments& options, Terminal& terminal)
     if (!options.truth.empty())
         publish(options.truth, bench::truthOf(drawn).dump(2) + "\n");
 
-    nlohmann::ordered_json document {{"format", "excursion-virtual"},
-                                     {"version", 1},
-                                     {"take", options.out},
-                                     {"seed", options.seed},
-                                     {"driver", drawn.driver},
-                                     {"sampleRate", take.sampleRate},
-                                     {"seconds", static_cast<double>(take.length()) / take.sampleRate}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-virtual"}.with(
+        {{"take", options.out},
+         {"seed", options.seed},
+         {"driver", drawn.driver},
+         {"sampleRate", take.sampleRate},
+         {"seconds", static_cast<double>(take.length()) / take.sampleRate}});
     if (options.plan.empty())
         document["period"] = take.excitation->period;
     else

@@ -6,6 +6,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Design/WhatIfFile.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -75,8 +76,8 @@ void run(const WhatIfArguments& options, Terminal& terminal)
     terminal.say(wrapped(advice(result)));
     if (motionIsGuessed)
         terminal.say(wrapped(guessedMotion("Every length above")));
-    nlohmann::ordered_json document {
-        {"format", "excursion-whatif"}, {"version", 1}, {"model", options.model}, {"take", options.take}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-whatif"}.with(
+        {{"model", options.model}, {"take", options.take}});
     document.update(toJson(result));
     document["motionIsGuessed"] = motionIsGuessed;
     terminal.document(document);

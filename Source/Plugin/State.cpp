@@ -2,6 +2,7 @@
 #include "Plugin/State.h"
 
 #include "Engine/BlackBox/ModelDocument.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -14,8 +15,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr auto formatName = "excursion-plugin-state";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat stateFormat {"excursion-plugin-state"};
 
 nlohmann::json parsed(std::string_view text, const std::string& where)
 {
@@ -47,10 +47,8 @@ double resonance(const Model& model) { return model.baseParameter("K").value / m
 
 std::string bytesOf(const State& state)
 {
-    nlohmann::ordered_json document {{"format", formatName},
-                                     {"version", formatVersion},
-                                     {"recipe", excursion::toJson(state.recipe)},
-                                     {"model", toJson(state.model)}};
+    nlohmann::ordered_json document = stateFormat.with(
+        {{"recipe", excursion::toJson(state.recipe)}, {"model", toJson(state.model)}});
     if (!state.between.empty())
         document["between"] = state.between;
     return jsonText(document);
@@ -61,7 +59,7 @@ State stateFrom(std::string_view bytes, const LoadedBoxPointer& known)
     const std::string where = "the plugin's state";
     const auto document = parsed(bytes, where);
     const JsonField field(document, "", where);
-    field.requireFormat(formatName, formatVersion);
+    stateFormat.require(field);
     State state {recipeFromJson(field.at("recipe")), anyModelFrom(field.at("model"), bytes, known), {}};
     if (field.has("between")) {
         const auto between = field.at("between");

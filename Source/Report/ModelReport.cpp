@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Report/ModelReport.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Fractional/FractionalIdentificationFile.h"
@@ -305,7 +306,7 @@ std::string documentHtml(const JsonField& document)
     const auto format = document.at("format").oneOf(known);
     for (const auto& wanted : pagesOf)
         if (format == wanted.format) {
-            document.requireFormat(format, 1);
+            DocumentFormat {format}.require(document);
             Page page(std::string("Excursion \u00b7 ") + wanted.title);
             wanted.add(page, document);
             return page.html();

@@ -2,6 +2,7 @@
 #include "Engine/Batch/CollectionFile.h"
 
 #include "Engine/Document/CsvText.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
@@ -59,13 +60,12 @@ Json quantityJson(const Quantities& q)
 
 Json toJson(const Collection& all)
 {
-    Json document {{"format", "excursion-collection"},
-                   {"version", 1},
-                   {"threshold", all.threshold},
-                   {"count", all.units.size()},
-                   {"measured", all.measured},
-                   {"passed", all.limited ? Json(all.passed) : Json(nullptr)},
-                   {"golden", all.golden ? Json(all.units[*all.golden].name) : Json(nullptr)}};
+    Json document = DocumentFormat {"excursion-collection"}.with(
+        {{"threshold", all.threshold},
+         {"count", all.units.size()},
+         {"measured", all.measured},
+         {"passed", all.limited ? Json(all.passed) : Json(nullptr)},
+         {"golden", all.golden ? Json(all.units[*all.golden].name) : Json(nullptr)}});
     document["units"] = Json::array();
     for (const auto& unit : all.units)
         document["units"].push_back(unitJson(unit, all.limited));

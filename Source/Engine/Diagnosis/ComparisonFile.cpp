@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/ComparisonFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 #include <cmath>
@@ -10,8 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-comparison";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat comparisonFormat {"excursion-comparison"};
 
 Json spectrumJson(const ErrorSpectrum& s)
 {
@@ -176,13 +176,11 @@ std::map<Quantity, double> decibelsFromJson(const JsonField& field)
 
 Json toJson(const Comparison& comparison)
 {
-    Json document {{"format", formatName},
-                   {"version", formatVersion},
-                   {"validated", comparison.validated},
-                   {"noiseKnown", comparison.noiseKnown},
-                   {"chiSquaredPerValue", numberOrNull(comparison.chiSquaredPerValue)},
-                   {"error", toJson(errorByChannel(comparison))},
-                   {"levels", numbersOrNulls(comparison.levels)}};
+    Json document = comparisonFormat.with({{"validated", comparison.validated},
+                                           {"noiseKnown", comparison.noiseKnown},
+                                           {"chiSquaredPerValue", numberOrNull(comparison.chiSquaredPerValue)},
+                                           {"error", toJson(errorByChannel(comparison))},
+                                           {"levels", numbersOrNulls(comparison.levels)}});
     document["channels"] = Json::array();
     for (const auto& channel : comparison.channels)
         document["channels"].push_back(channelJson(channel, comparison.levels));
@@ -197,7 +195,7 @@ Json toJson(const Comparison& comparison)
 
 Comparison comparisonFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    comparisonFormat.require(field);
     Comparison comparison;
     comparison.validated = field.at("validated").flag();
     comparison.noiseKnown = field.at("noiseKnown").flag();

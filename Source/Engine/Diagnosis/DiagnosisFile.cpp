@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/RemainderFile.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 #include <array>
@@ -12,8 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto diagnosisFormat = "excursion-diagnosis";
-constexpr int diagnosisVersion = 1;
+constexpr DocumentFormat diagnosisFormat {"excursion-diagnosis"};
 
 Json rankedJson(const RankedEffect& ranked)
 {
@@ -106,11 +106,8 @@ std::vector<std::string> textsFromJson(const JsonField& field)
 
 Json toJson(const Diagnosis& diagnosis)
 {
-    Json document {{"format", diagnosisFormat},
-                   {"version", diagnosisVersion},
-                   {"verdict", name(diagnosis.verdict)},
-                   {"sentence", diagnosis.sentence},
-                   {"error", toJson(diagnosis.error)}};
+    Json document = diagnosisFormat.with(
+        {{"verdict", name(diagnosis.verdict)}, {"sentence", diagnosis.sentence}, {"error", toJson(diagnosis.error)}});
     document["ranking"] = Json::array();
     for (const auto& ranked : diagnosis.ranking)
         document["ranking"].push_back(rankedJson(ranked));
@@ -123,7 +120,7 @@ Json toJson(const Diagnosis& diagnosis)
 
 Diagnosis diagnosisFromJson(const JsonField& field)
 {
-    field.requireFormat(diagnosisFormat, diagnosisVersion);
+    diagnosisFormat.require(field);
     Diagnosis diagnosis;
     diagnosis.verdict = verdictFromJson(field.at("verdict"));
     diagnosis.sentence = field.at("sentence").text();

@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Diagnosis/RemainderFile.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Loudspeaker/ModelFile.h"
 
@@ -15,8 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto ladderFormat = "excursion-ladder";
-constexpr int ladderVersion = 1;
+constexpr DocumentFormat ladderFormat {"excursion-ladder"};
 
 Json parametersJson(const Model& model)
 {
@@ -245,16 +245,15 @@ LadderFile makeLadderFile(Ladder ladder, const PreparedTake& take, const std::st
 
 Json toJson(const LadderFile& file)
 {
-    Json document {
-        {"format", ladderFormat},
-        {"version", ladderVersion},
-        {"verdict", name(file.ladder.verdict)},
-        {"sentence", file.ladder.sentence},
-        {"problems", toJson(file.ladder.problems)},
-        {"withdrawn", file.ladder.withdrawn},
-        {"known", knownJson(file.ladder)},
-        {"remainder", file.ladder.rungs.empty() ? Json(nullptr) : toJson(file.ladder.rungs.back().diagnosis.remainder)},
-        {"take", takeJson(file.take)}};
+    Json document = ladderFormat.with(
+        {{"verdict", name(file.ladder.verdict)},
+         {"sentence", file.ladder.sentence},
+         {"problems", toJson(file.ladder.problems)},
+         {"withdrawn", file.ladder.withdrawn},
+         {"known", knownJson(file.ladder)},
+         {"remainder",
+          file.ladder.rungs.empty() ? Json(nullptr) : toJson(file.ladder.rungs.back().diagnosis.remainder)},
+         {"take", takeJson(file.take)}});
     document["rungs"] = Json::array();
     for (std::size_t k = 0; k < file.ladder.rungs.size(); ++k)
         document["rungs"].push_back(rungJson(file.ladder.rungs[k], k > 0 ? &file.ladder.rungs[k - 1] : nullptr));
@@ -268,7 +267,7 @@ Json toJson(const LadderFile& file)
 LadderFile ladderFromJson(const nlohmann::json& document, const std::string& where)
 {
     const JsonField root(document, "", where);
-    root.requireFormat(ladderFormat, ladderVersion);
+    ladderFormat.require(root);
     LadderFile file;
     file.ladder.verdict = verdictFromJson(root.at("verdict"));
     file.ladder.sentence = root.at("sentence").text();

@@ -145,18 +145,6 @@ std::string JsonField::oneOf(const std::vector<std::string>& known) const
     refuse(list);
 }
 
-void JsonField::requireFormat(std::string_view format, int version) const
-{
-    if (!value_.is_object())
-        refuse("an object of format " + std::string(format));
-    const auto found = at("format");
-    if (!found.value().is_string() || found.text() != format)
-        found.refuse("\"" + std::string(format) + "\"; give another file");
-    const auto number = at("version");
-    if (!number.value().is_number() || number.value().get<double>() != version)
-        number.refuse(std::to_string(version) + ", the only version that this program reads");
-}
-
 nlohmann::json readJson(const std::filesystem::path& path)
 {
     const auto text = readText(path);

@@ -43,9 +43,6 @@ public:
     std::vector<double> numbers() const;  ///< array of numbers or nulls
     std::string oneOf(const std::vector<std::string>& known) const;
 
-    /// The two fields that every document begins with. Throws unless they are this format, this version.
-    void requireFormat(std::string_view format, int version) const;
-
 private:
     const nlohmann::json& value_;
     std::string path_, source_;

@@ -12,6 +12,8 @@
 namespace excursion {
 namespace {
 
+constexpr DocumentFormat fractionalIdentificationFormat {"excursion-fractional-identification"};
+
 using Json = nlohmann::ordered_json;
 
 Json json(const FractionalSweep::Entry& entry)
@@ -63,7 +65,7 @@ FractionalSweep::Entry entryIn(const JsonField& object)
 
 nlohmann::ordered_json toJson(const IdentifiedFractionalModel& identified)
 {
-    auto document = sweepJson("excursion-fractional-identification", identified,
+    auto document = sweepJson(fractionalIdentificationFormat, identified,
                               [](const auto& entry) { return json(entry); });
     document["warning"] = identified.sweep.warning;
     document["eigenvalues"] = rootsJson(poles(identified.model.model.form));
@@ -73,7 +75,7 @@ nlohmann::ordered_json toJson(const IdentifiedFractionalModel& identified)
 
 IdentifiedFractionalModel fractionalIdentificationFromJson(const JsonField& document)
 {
-    document.requireFormat("excursion-fractional-identification", 1);
+    fractionalIdentificationFormat.require(document);
     IdentifiedFractionalModel identified;
     readSweep(document, identified, entryIn);
     identified.sweep.warning = document.at("warning").text();

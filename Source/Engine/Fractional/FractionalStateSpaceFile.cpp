@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 
@@ -9,14 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-fractional-state-space";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat fractionalStateSpaceFormat {"excursion-fractional-state-space"};
 
 }  // namespace
 
 Json toJson(const NamedFractionalStateSpace& named)
 {
-    Json document {{"format", formatName}, {"version", formatVersion}, {"name", named.name}};
+    Json document = fractionalStateSpaceFormat.with({{"name", named.name}});
     document["alpha"] = named.model.alpha;
     document["form"] = toJson(NamedStateSpace {named.name, named.inputs, named.outputs, named.model.form});
     return document;
@@ -24,7 +24,7 @@ Json toJson(const NamedFractionalStateSpace& named)
 
 NamedFractionalStateSpace fractionalStateSpaceFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    fractionalStateSpaceFormat.require(field);
     const auto form = field.at("form");
     auto inner = stateSpaceFromJson(form);
     if (!inner.model.continuous())

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/GreyBox/MotorConeFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 #include <nlohmann/json.hpp>
 
 namespace excursion {
+namespace {
+
+constexpr DocumentFormat motorConeFormat {"excursion-motor-cone"};
+
+}  // namespace
 
 nlohmann::ordered_json toJson(const NamedMotorCone& found)
 {
-    nlohmann::ordered_json document {
-        {"format", "excursion-motor-cone"}, {"version", 1}, {"source", found.source}, {"name", found.name}};
+    nlohmann::ordered_json document = motorConeFormat.with({{"source", found.source}, {"name", found.name}});
     document["delay"] = found.delay;
     document["motorErrorDb"] = numberOrNull(found.motorErrorDb);
     document["coneErrorDb"] = numberOrNull(found.coneErrorDb);
@@ -29,7 +34,7 @@ nlohmann::ordered_json toJson(const NamedMotorCone& found)
 
 NamedMotorCone motorConeFromJson(const JsonField& document)
 {
-    document.requireFormat("excursion-motor-cone", 1);
+    motorConeFormat.require(document);
     NamedMotorCone found;
     found.source = document.at("source").text();
     found.name = document.at("name").text();

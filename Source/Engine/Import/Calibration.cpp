@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/Calibration.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
 #include "Engine/Import/TextTable.h"
@@ -15,7 +16,7 @@
 namespace excursion {
 namespace {
 
-constexpr auto formatName = "excursion-calibration";
+constexpr DocumentFormat calibrationFormat {"excursion-calibration"};
 constexpr double standardGravity = 9.80665;  // m/s^2
 
 double positive(const JsonField& field, double most = 1e12)
@@ -160,7 +161,7 @@ Calibration readCalibration(const std::filesystem::path& path)
 {
     const auto document = readJson(path);
     const JsonField root(document, "", path.string());
-    root.requireFormat(formatName, 1);
+    calibrationFormat.require(root);
     Calibration calibration;
     calibration.folder = path.parent_path();
     for (const auto& item : root.at("channels").items()) {
@@ -174,8 +175,7 @@ Calibration readCalibration(const std::filesystem::path& path)
 
 nlohmann::ordered_json calibrationJson(const Calibration& calibration)
 {
-    nlohmann::ordered_json document {
-        {"format", formatName}, {"version", 1}, {"channels", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json document = calibrationFormat.with({{"channels", nlohmann::ordered_json::array()}});
     for (const auto& c : calibration.channels) {
         nlohmann::ordered_json channel {{"channel", c.channel}};
         if (c.quantity)

@@ -11,6 +11,8 @@
 namespace excursion {
 namespace {
 
+constexpr DocumentFormat identificationFormat {"excursion-identification"};
+
 using Json = nlohmann::ordered_json;
 
 Json json(const OrderSweepEntry& entry)
@@ -53,7 +55,7 @@ nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>& roots,
 
 nlohmann::ordered_json toJson(const IdentifiedModel& identified)
 {
-    auto document = sweepJson("excursion-identification", identified, [](const auto& entry) { return json(entry); });
+    auto document = sweepJson(identificationFormat, identified, [](const auto& entry) { return json(entry); });
     document["poles"] = rootsJson(poles(identified.model.model));
     document["zeros"] = rootsJson(zeros(identified.model.model));
     document["model"] = toJson(identified.model);
@@ -62,7 +64,7 @@ nlohmann::ordered_json toJson(const IdentifiedModel& identified)
 
 IdentifiedModel identificationFromJson(const JsonField& document)
 {
-    document.requireFormat("excursion-identification", 1);
+    identificationFormat.require(document);
     IdentifiedModel identified;
     readSweep(document, identified, entryIn);
     identified.model = stateSpaceFromJson(document.at("model"));

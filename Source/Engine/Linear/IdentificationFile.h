@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Linear/OrderSweep.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
 #include <nlohmann/json.hpp>
@@ -30,9 +31,9 @@ nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>&, doubl
 /// why.
 /// @param entryOf  makes the object of one of the orders
 template <class Identified, class EntryOf>
-nlohmann::ordered_json sweepJson(const char* format, const Identified& identified, EntryOf entryOf)
+nlohmann::ordered_json sweepJson(const DocumentFormat& format, const Identified& identified, EntryOf entryOf)
 {
-    nlohmann::ordered_json document {{"format", format}, {"version", 1}, {"source", identified.source}};
+    nlohmann::ordered_json document = format.with({{"source", identified.source}});
     document["lines"] = identified.lines;
     document["orders"] = nlohmann::ordered_json::array();
     for (const auto& entry : identified.sweep.entries)

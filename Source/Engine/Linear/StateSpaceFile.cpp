@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/StateSpaceFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 
@@ -11,8 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-state-space";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat stateSpaceFormat {"excursion-state-space"};
 
 std::vector<std::string> names(const JsonField& field)
 {
@@ -60,7 +60,7 @@ Eigen::MatrixXd matrixFrom(const JsonField& field, Eigen::Index rows, Eigen::Ind
 
 Json toJson(const NamedStateSpace& named)
 {
-    Json document {{"format", formatName}, {"version", formatVersion}, {"name", named.name}};
+    Json document = stateSpaceFormat.with({{"name", named.name}});
     document["sampleRate"] = named.model.sampleRate;
     document["inputs"] = named.inputs;
     document["outputs"] = named.outputs;
@@ -76,7 +76,7 @@ Json toJson(const NamedStateSpace& named)
 
 NamedStateSpace stateSpaceFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    stateSpaceFormat.require(field);
     NamedStateSpace named;
     named.name = field.at("name").text();
     named.inputs = names(field.at("inputs"));

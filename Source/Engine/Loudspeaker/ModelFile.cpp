@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/ModelFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
@@ -16,8 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-model";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat modelFormat {"excursion-model"};
 
 Json parametersJson(const std::vector<Parameter>& parameters)
 {
@@ -177,7 +177,7 @@ Eigen::MatrixXd covarianceFrom(const JsonField& field, std::size_t count)
 
 Json toJson(const Model& model)
 {
-    Json document {{"format", formatName}, {"version", formatVersion}, {"name", model.name}};
+    Json document = modelFormat.with({{"name", model.name}});
     document["base"] = {{"id", model.base().effect->id()}, {"parameters", parametersJson(model.base().parameters)}};
     document["effects"] = Json::array();
     for (std::size_t k = 1; k < model.components.size(); ++k) {
@@ -195,7 +195,7 @@ Json toJson(const Model& model)
 
 Model modelFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    modelFormat.require(field);
     const auto base = field.at("base");
     auto model = makeModel(base.at("id").oneOf({electrodynamicBase().id(), mechanicalBase().id()}));
     model.name = field.at("name").text();

@@ -5,11 +5,10 @@
 
 namespace excursion {
 
-nlohmann::ordered_json modelHeader(std::string_view format, int version, const std::string& name, double sampleRate,
+nlohmann::ordered_json modelHeader(const DocumentFormat& format, const std::string& name, double sampleRate,
                                    const std::string& input, const std::string& output)
 {
-    return {{"format", format},         {"version", version}, {"name", name},
-            {"sampleRate", sampleRate}, {"input", input},     {"output", output}};
+    return format.with({{"name", name}, {"sampleRate", sampleRate}, {"input", input}, {"output", output}});
 }
 
 }  // namespace excursion

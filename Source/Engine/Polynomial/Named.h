@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonField.h"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
-#include <string_view>
 
 namespace excursion {
 
@@ -19,15 +19,15 @@ struct Named {
 };
 
 /// What such documents begin with: format, version, name, sampleRate, input, output.
-nlohmann::ordered_json modelHeader(std::string_view format, int version, const std::string& name, double sampleRate,
+nlohmann::ordered_json modelHeader(const DocumentFormat&, const std::string& name, double sampleRate,
                                    const std::string& input, const std::string& output);
 
 /// Reads that of a document. Throws Error (input) naming the field when the document is not of this format and version,
 /// or the rate not above 0.
 template <class Model>
-Named<Model> namedFromHeader(const JsonField& field, std::string_view format, int version)
+Named<Model> namedFromHeader(const JsonField& field, const DocumentFormat& format)
 {
-    field.requireFormat(format, version);
+    format.require(field);
     Named<Model> named {field.at("name").text(), field.at("input").text(), field.at("output").text(), {}};
     named.model.sampleRate = field.at("sampleRate").number();
     if (!(named.model.sampleRate > 0.0))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Recipe.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Validity.h"
 
@@ -10,8 +11,7 @@
 namespace excursion {
 namespace {
 
-constexpr auto formatName = "excursion-recipe";
-constexpr int formatVersion = 4;
+constexpr DocumentFormat recipeFormat {"excursion-recipe", 4};
 
 struct Names {
     std::string_view name, title;
@@ -29,12 +29,12 @@ constexpr std::array<std::string_view, 6> targetKinds {"own", "resonance", "clos
 int versionOf(const JsonField& field)
 {
     const auto number = field.at("version");
-    int version = formatVersion;
+    int version = recipeFormat.version;
     while (version > 1 && number.value() != version)
         --version;
     if (number.value() != version)
         number.refuse("1, 2, 3 or 4, the versions that this program reads");
-    field.requireFormat(formatName, version);
+    DocumentFormat {recipeFormat.name, version}.require(field);
     return version;
 }
 
@@ -138,21 +138,19 @@ PredistortionControls controlsOf(const Recipe& recipe, const Model& model)
 
 nlohmann::ordered_json toJson(const Recipe& recipe)
 {
-    return {{"format", formatName},
-            {"version", formatVersion},
-            {"title", recipe.title},
-            {"words", recipe.words},
-            {"mode", name(recipe.mode)},
-            {"fullScale", recipe.fullScale},
-            {"amount", recipe.amount},
-            {"displacementLimit", recipe.displacementLimit},
-            {"voltageLimit", recipe.voltageLimit},
-            {"powerLimit", recipe.powerLimit},
-            {"margin", recipe.margin},
-            {"coilResistance", recipe.coilResistance},
-            {"trimDb", recipe.trimDb},
-            {"target", documentOf(recipe.target)},
-            {"off", recipe.off}};
+    return recipeFormat.with({{"title", recipe.title},
+                              {"words", recipe.words},
+                              {"mode", name(recipe.mode)},
+                              {"fullScale", recipe.fullScale},
+                              {"amount", recipe.amount},
+                              {"displacementLimit", recipe.displacementLimit},
+                              {"voltageLimit", recipe.voltageLimit},
+                              {"powerLimit", recipe.powerLimit},
+                              {"margin", recipe.margin},
+                              {"coilResistance", recipe.coilResistance},
+                              {"trimDb", recipe.trimDb},
+                              {"target", documentOf(recipe.target)},
+                              {"off", recipe.off}});
 }
 
 Recipe recipeFromJson(const JsonField& field)

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Ranking/PolynomialFitFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 namespace excursion {
 namespace {
+
+constexpr DocumentFormat polynomialFitFormat {"excursion-pnlss-fit"};
 
 using Json = nlohmann::ordered_json;
 
@@ -31,7 +34,7 @@ AgreedLaws lawsIn(const JsonField& object)
 
 nlohmann::ordered_json toJson(const PolynomialFit& fit)
 {
-    Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", fit.take}};
+    Json document = polynomialFitFormat.with({{"take", fit.take}});
     document["estimationDb"] = fit.estimationDb;
     document["validationDb"] = numberOrNull(fit.validationDb);
     document["noiseDb"] = optionalNumber(fit.noiseDb);
@@ -49,7 +52,7 @@ nlohmann::ordered_json toJson(const PolynomialFit& fit)
 
 PolynomialFit polynomialFitFromJson(const JsonField& document)
 {
-    document.requireFormat("excursion-pnlss-fit", 1);
+    polynomialFitFormat.require(document);
     PolynomialFit fit;
     fit.take = document.at("take").text();
     fit.estimationDb = document.at("estimationDb").numberOrNaN();

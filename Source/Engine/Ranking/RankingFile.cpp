@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Ranking/RankingFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 #include <limits>
 
 namespace excursion {
 namespace {
+
+constexpr DocumentFormat rankingFormat {"excursion-ranking"};
 
 using Json = nlohmann::ordered_json;
 
@@ -97,11 +100,8 @@ RankedModel modelIn(const JsonField& object)
 
 nlohmann::ordered_json toJson(const Ranking& ranking)
 {
-    Json document {{"format", "excursion-ranking"},
-                   {"version", 1},
-                   {"take", ranking.take},
-                   {"input", name(ranking.input)},
-                   {"output", name(ranking.output)}};
+    Json document = rankingFormat.with(
+        {{"take", ranking.take}, {"input", name(ranking.input)}, {"output", name(ranking.output)}});
     document["noiseDb"] = optionalNumber(ranking.noiseDb);
     document["sentence"] = ranking.sentence;
     document["linearizesBest"] = textOrNull(ranking.straightest);
@@ -116,7 +116,7 @@ nlohmann::ordered_json toJson(const Ranking& ranking)
 
 Ranking rankingFromJson(const JsonField& document)
 {
-    document.requireFormat("excursion-ranking", 1);
+    rankingFormat.require(document);
     Ranking ranking;
     ranking.take = document.textIn("take");
     ranking.input = quantityIn(document.at("input"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Take/MeasurementJson.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
@@ -17,8 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr auto formatName = "excursion-measurement";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat measurementFormat {"excursion-measurement"};
 constexpr long mostSamples = 1L << 40;
 
 double notNegative(const JsonField& field, const std::string& expected)
@@ -213,7 +213,7 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
     const JsonField root(document, "", source);
     if (!document.is_object())
         throw Error(Error::Kind::input, "'" + source + "' is JSON but not an object; a measurement.json is expected.");
-    root.requireFormat(formatName, formatVersion);
+    measurementFormat.require(root);
 
     MeasurementHeader header;
     auto& measurement = header.measurement;
@@ -235,11 +235,8 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
 nlohmann::ordered_json measurementJson(const Measurement& measurement, const std::string& audio,
                                        const SweepExcitation* sweep)
 {
-    nlohmann::ordered_json document {{"format", formatName},
-                                     {"version", formatVersion},
-                                     {"sampleRate", measurement.sampleRate},
-                                     {"audio", audio},
-                                     {"channels", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json document = measurementFormat.with(
+        {{"sampleRate", measurement.sampleRate}, {"audio", audio}, {"channels", nlohmann::ordered_json::array()}});
     for (const auto& channel : measurement.channels) {
         document["channels"].push_back(
             {{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"fullScale", channel.fullScale}});

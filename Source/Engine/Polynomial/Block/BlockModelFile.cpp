@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Block/BlockModelFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
 namespace excursion {
+namespace {
+
+constexpr DocumentFormat blockModelFormat {"excursion-block-model"};
+
+}  // namespace
 
 nlohmann::ordered_json toJson(const Named<BlockModel>& named)
 {
-    nlohmann::ordered_json document {{"format", "excursion-block-model"}, {"version", 1}, {"name", named.name}};
+    nlohmann::ordered_json document = blockModelFormat.with({{"name", named.name}});
     document["linear"] = toJson(NamedStateSpace {named.name, {named.input}, {named.output}, named.model.linear});
     for (const auto branch : blockBranches()) {
         const auto& c = named.model.of(branch);
@@ -20,7 +26,7 @@ nlohmann::ordered_json toJson(const Named<BlockModel>& named)
 
 Named<BlockModel> blockModelFromJson(const JsonField& field)
 {
-    field.requireFormat("excursion-block-model", 1);
+    blockModelFormat.require(field);
     auto linear = stateSpaceFromJson(field.at("linear"));
     if (linear.inputs.size() != 1 || linear.outputs.size() != 1 || linear.model.continuous())
         field.at("linear").refuse("a linear part of discrete time with one input and one output");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
@@ -10,16 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto fractionalFormat = "excursion-fractional-pnlss";
-constexpr int fractionalVersion = 1;
+constexpr DocumentFormat fractionalPnlssFormat {"excursion-fractional-pnlss"};
 
 }  // namespace
 
 Json toJson(const NamedFractionalPnlss& named)
 {
     const auto& model = named.model;
-    Json document {
-        {"format", fractionalFormat}, {"version", fractionalVersion}, {"name", named.name}, {"alpha", model.alpha}};
+    Json document = fractionalPnlssFormat.with({{"name", named.name}, {"alpha", model.alpha}});
     document["fractional"] = std::vector<bool>(model.fractional.begin(), model.fractional.end());
     document["grid"] = {{"sampleRate", named.grid.sampleRate},
                         {"substeps", named.grid.substeps},
@@ -33,7 +32,7 @@ Json toJson(const NamedFractionalPnlss& named)
 
 NamedFractionalPnlss fractionalPnlssFromJson(const JsonField& field)
 {
-    field.requireFormat(fractionalFormat, fractionalVersion);
+    fractionalPnlssFormat.require(field);
     auto linear = stateSpaceFromJson(field.at("linear"));
     NamedFractionalPnlss named {field.at("name").text(), linear.inputs, linear.outputs, {}, {}};
     auto& model = named.model;

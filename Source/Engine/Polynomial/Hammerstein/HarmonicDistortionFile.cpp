@@ -2,6 +2,7 @@
 #include "Engine/Polynomial/Hammerstein/HarmonicDistortionFile.h"
 
 #include "Engine/Document/CsvText.h"
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
 namespace excursion {
@@ -17,12 +18,11 @@ std::vector<double> curveColumn(const Eigen::MatrixXd& values, Eigen::Index colu
 
 nlohmann::ordered_json toJson(const HarmonicDistortion& distortion)
 {
-    nlohmann::ordered_json document {{"format", "excursion-harmonics"},
-                                     {"version", 1},
-                                     {"highest", distortion.highest},
-                                     {"response", distortion.response},
-                                     {"band", {distortion.bandLow, distortion.bandHigh}},
-                                     {"remarks", distortion.remarks}};
+    nlohmann::ordered_json document = DocumentFormat {"excursion-harmonics"}.with(
+        {{"highest", distortion.highest},
+         {"response", distortion.response},
+         {"band", {distortion.bandLow, distortion.bandHigh}},
+         {"remarks", distortion.remarks}});
     document["curves"] = nlohmann::ordered_json::array();
     for (const auto& c : distortion.curves) {
         nlohmann::ordered_json curve {{"channel", name(c.quantity)}, {"unit", c.unit}, {"level", c.level}};

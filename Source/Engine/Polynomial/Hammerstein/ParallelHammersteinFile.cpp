@@ -5,10 +5,15 @@
 #include "Engine/Linear/StateSpaceFile.h"
 
 namespace excursion {
+namespace {
+
+constexpr DocumentFormat parallelHammersteinFormat {"excursion-parallel-hammerstein"};
+
+}  // namespace
 
 nlohmann::ordered_json toJson(const Named<ParallelHammerstein>& named)
 {
-    auto document = modelHeader("excursion-parallel-hammerstein", 1, named.name, named.model.sampleRate, named.input,
+    auto document = modelHeader(parallelHammersteinFormat, named.name, named.model.sampleRate, named.input,
                                 named.output);
     document["offset"] = named.model.offset;
     document["branches"] = matrixJson(named.model.filters.transpose());
@@ -17,7 +22,7 @@ nlohmann::ordered_json toJson(const Named<ParallelHammerstein>& named)
 
 Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField& field)
 {
-    auto named = namedFromHeader<ParallelHammerstein>(field, "excursion-parallel-hammerstein", 1);
+    auto named = namedFromHeader<ParallelHammerstein>(field, parallelHammersteinFormat);
     named.model.offset = field.at("offset").number();
     const auto branches = field.at("branches").items();
     if (branches.empty() || branches[0].items().empty())

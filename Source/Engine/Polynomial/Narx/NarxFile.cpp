@@ -4,11 +4,16 @@
 #include "Engine/Document/JsonText.h"
 
 namespace excursion {
+namespace {
+
+constexpr DocumentFormat narxFormat {"excursion-narx"};
+
+}  // namespace
 
 nlohmann::ordered_json toJson(const Named<Narx>& named)
 {
     const auto& model = named.model;
-    auto document = modelHeader("excursion-narx", 1, named.name, model.sampleRate, named.input, named.output);
+    auto document = modelHeader(narxFormat, named.name, model.sampleRate, named.input, named.output);
     document["outputLags"] = model.outputLags;
     document["inputLags"] = model.inputLags;
     document["terms"] = nlohmann::ordered_json::array();
@@ -22,7 +27,7 @@ nlohmann::ordered_json toJson(const Named<Narx>& named)
 
 Named<Narx> narxFromJson(const JsonField& field)
 {
-    auto named = namedFromHeader<Narx>(field, "excursion-narx", 1);
+    auto named = namedFromHeader<Narx>(field, narxFormat);
     auto& model = named.model;
     model.outputLags = field.at("outputLags").count(0, 100);
     model.inputLags = field.at("inputLags").count(0, 100);

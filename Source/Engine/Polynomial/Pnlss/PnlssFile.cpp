@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 
+#include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
@@ -12,8 +13,7 @@ namespace {
 using Eigen::Index;
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-pnlss";
-constexpr int formatVersion = 1;
+constexpr DocumentFormat pnlssFormat {"excursion-pnlss"};
 
 /// One object a monomial: its exponents, its coefficient in each row, and which of them a fit may move.
 Json termJson(const Pnlss& model, Index k)
@@ -42,7 +42,7 @@ Json termsJson(const Pnlss& model)
 
 Json toJson(const NamedPnlss& named)
 {
-    Json document {{"format", formatName}, {"version", formatVersion}, {"name", named.name}};
+    Json document = pnlssFormat.with({{"name", named.name}});
     document["linear"] = toJson(NamedStateSpace {named.name, named.inputs, named.outputs, named.model.linear});
     document["terms"] = termsJson(named.model);
     return document;
@@ -87,7 +87,7 @@ void readTerms(const JsonField& field, Pnlss& model)
 
 NamedPnlss pnlssFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    pnlssFormat.require(field);
     auto linear = stateSpaceFromJson(field.at("linear"));
     NamedPnlss named {field.at("name").text(), linear.inputs, linear.outputs, {}};
     auto& model = named.model;

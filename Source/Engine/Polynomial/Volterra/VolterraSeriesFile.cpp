@@ -5,12 +5,16 @@
 #include "Engine/Linear/StateSpaceFile.h"
 
 namespace excursion {
+namespace {
+
+constexpr DocumentFormat volterraSeriesFormat {"excursion-volterra-series"};
+
+}  // namespace
 
 nlohmann::ordered_json toJson(const Named<VolterraSeries>& named)
 {
     const auto& model = named.model;
-    auto document = modelHeader("excursion-volterra-series", 1, named.name, model.sampleRate, named.input,
-                                named.output);
+    auto document = modelHeader(volterraSeriesFormat, named.name, model.sampleRate, named.input, named.output);
     document["offset"] = model.offset;
     document["first"] = std::vector<double>(model.first.begin(), model.first.end());
     document["second"] = matrixJson(model.second);
@@ -22,7 +26,7 @@ nlohmann::ordered_json toJson(const Named<VolterraSeries>& named)
 
 Named<VolterraSeries> volterraSeriesFromJson(const JsonField& field)
 {
-    auto named = namedFromHeader<VolterraSeries>(field, "excursion-volterra-series", 1);
+    auto named = namedFromHeader<VolterraSeries>(field, volterraSeriesFormat);
     auto& model = named.model;
     model.offset = field.at("offset").number();
     const auto first = field.at("first").items();
