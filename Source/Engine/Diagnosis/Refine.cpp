@@ -19,10 +19,10 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
-    const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool bent, double from, double to) {
+    const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool corrected, double from, double to) {
         auto chosen = options;
         chosen.search = search;
-        chosen.bent = bent;
+        chosen.corrected = corrected;
         chosen.fedGradient = fedGradient && hasPeriods(record);
         chosen.exactGradient = !fedGradient;
         return fit(model, record, sections, chosen, progress.part(from, to));
@@ -42,7 +42,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
-        LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-7};
+        LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-4};
         if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
             constexpr double noise = 0.5;  // of the cost, half the sum of squares
             alongTheFloor.maximumIterations = 15;

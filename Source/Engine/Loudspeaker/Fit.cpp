@@ -3,8 +3,8 @@
 
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/KeptSlopes.h"
 #include "Engine/Loudspeaker/OutputError.h"
-#include "Engine/Loudspeaker/StepCurvature.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Validity.h"
 
@@ -61,13 +61,10 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     return kept;
 }
 
-/// Sections as a model predicts them, with spectra.
-using PredictOf = std::function<std::vector<SectionFit>(const Model&)>;
-
 /// The search of the model's parameters for the least error.
-/// @param predict  none, or by what steps follow the bend of the error's valley; errorOf tells slopes then
+/// @param corrected  steps are corrected by the slopes of their begin; errorOf tells slopes and spectra then
 FitSummary search(Model& model, const Record& record, const std::vector<std::size_t>& sections, const ErrorOf& errorOf,
-                  const FitOptions& options, const Progress& progress, const PredictOf& predict = {})
+                  const FitOptions& options, const Progress& progress, bool corrected = false)
 {
     FitSummary summary;
     for (auto* parameter : parametersOf(model))
@@ -89,15 +86,8 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         for (Eigen::Index k = 0; k < P; ++k)
             all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
     };
-    std::optional<StepCurvature> bend;
-    if (predict)
-        bend.emplace(record, sections, [&](const Eigen::VectorXd& at) {
-            place(at);
-            return predict(model);
-        });
-    const auto along = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& step) {
-        return bend->along(at, step, lower, upper);
-    };
+    std::vector<SectionFit> tried;  // where slopes were not asked for, last
+    KeptSlopes slopes(record, sections);
     NormalEquations last;                                     // at the last place with slopes
     bool noiseAtLast = false;                                 // there
     double variance = 0.0;                                    // of the residuals at the start
@@ -119,16 +109,27 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
             last = sum;
             noiseAtLast = onlyNoise;
         }
-        if (gradient && bend)
-            bend->beginAt(std::move(fits));
+        if (corrected && gradient)
+            slopes.keep(std::move(fits));
+        else if (corrected)
+            tried = std::move(fits);
         if (sum.cost < lowest) {  // the search takes every such step
             lowest = sum.cost;
             summary.onlyNoise = onlyNoise;
         }
         return true;
     };
+    const auto chord = [&] {
+        NormalEquations pull;
+        pull.g = slopes.gradientAt(tried);
+        if (pull.g.size() == 0)
+            return pull.g;
+        pull.N = Eigen::MatrixXd::Zero(pull.g.size(), pull.g.size());
+        addPrior(model, active, pull, variance);  // the model stands where it was tried
+        return pull.g;
+    };
     static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress,
-                                                    bend ? Curvature(along) : Curvature());
+                                                    corrected ? ChordGradient(chord) : ChordGradient());
     place(theta);
     if (!summary.usable())
         return summary;
@@ -250,15 +251,9 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());
     PlayedSections played;
-    run.slopes = options.bent && hasPeriods(record)
+    run.slopes = options.corrected && hasPeriods(record)
                  && residualsOf(record, sections) * parametersOf(model).size() < roomForSlopes;
-    const PredictOf predict = [&](const Model& at) {
-        auto plain = run;
-        plain.gradient = plain.slopes = false;
-        plain.spectra = true;
-        return slopesFed ? feedbackError(at, record, sections, motions, {}, plain)
-                         : outputError(at, record, sections, {}, plain);
-    };
+    run.spectra = run.slopes;
     auto summary = search(
         model, record, sections,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
@@ -269,7 +264,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             return gradient ? feedbackError(model, record, sections, motions, active, run, progress, &simulated, &known)
                             : simulated;
         },
-        options, progress, run.slopes ? predict : PredictOf());
+        options, progress, run.slopes);
     summary.substeps = run.substeps;
     return summary;
 }

@@ -21,9 +21,9 @@ struct FitOptions {
     /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
     /// few more are needed
     bool fedGradient = false;
-    /// on records with periods, unless `fed`: steps follow the bend of the error's valley (StepCurvature.h); more work
-    /// a step, but fewer steps along valleys at whose end the last digits are
-    bool bent = false;
+    /// on records with periods, unless `fed`: steps are corrected by the slopes of their begin (KeptSlopes.h), which
+    /// leads further along the bent valleys at whose end the last digits are
+    bool corrected = false;
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
                        ///< and nearly as good, for starts and trials; a take without periods is simulated all the same
 

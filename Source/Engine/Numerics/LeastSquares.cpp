@@ -66,17 +66,18 @@ VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box&
     return d;
 }
 
-/// What a step is made longer by to follow the bend of its valley, of the parameters that it moves freely.
-VectorXd bendOf(const NormalEquations& at, const VectorXd& theta, const VectorXd& d, const VectorXd& curvature,
-                const Box& box, double lambda)
+/// What a step d to a place within the box still lacks, by the slopes of its begin, of the parameters that moved
+/// freely.
+VectorXd correctionOf(const NormalEquations& at, const VectorXd& there, const VectorXd& d, const VectorXd& pull,
+                      const Box& box, double lambda)
 {
     std::vector<Index> free;
-    for (Index k = 0; k < theta.size(); ++k)
-        if (const double there = theta[k] + d[k]; d[k] != 0.0 && there > box.lower[k] && there < box.upper[k])
+    for (Index k = 0; k < there.size(); ++k)
+        if (d[k] != 0.0 && there[k] > box.lower[k] && there[k] < box.upper[k])
             free.push_back(k);
-    VectorXd a = VectorXd::Zero(theta.size());
+    VectorXd a = VectorXd::Zero(there.size());
     if (!free.empty())
-        a(free) = dampedSolve(free, at.N, curvature, lambda);
+        a(free) = dampedSolve(free, at.N, pull + lambda * at.N.diagonal().cwiseProduct(d), lambda);
     return a;
 }
 
@@ -84,11 +85,11 @@ VectorXd bendOf(const NormalEquations& at, const VectorXd& theta, const VectorXd
 /// refused lets it rise, by 2, 4, 8 and so on.
 class Damping {
 public:
-    Damping(double first, double fall) : fall_(fall), lambda_(first * fall) {}
+    explicit Damping(double first) : lambda_(first * fall) {}
 
     void begin()
     {
-        lambda_ = std::max(lambda_ / fall_, least);
+        lambda_ = std::max(lambda_ / fall, least);
         rise_ = 2.0;
     }
     void refuse()
@@ -100,8 +101,8 @@ public:
     double lambda() const { return lambda_; }
 
 private:
-    static constexpr double least = 1e-9, most = 1e9;
-    double fall_, lambda_, rise_ = 2.0;
+    static constexpr double least = 1e-9, most = 1e9, fall = 3.0;
+    double lambda_, rise_ = 2.0;
 };
 
 struct Trial {
@@ -123,7 +124,7 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
 }
 
 SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const VectorXd& lower, const VectorXd& upper,
-                       const LeastSquaresOptions& options, const Progress& progress, const Curvature& curvature)
+                       const LeastSquaresOptions& options, const Progress& progress, const ChordGradient& chord)
 {
     std::string invalid;
     if (!options.isValid(&invalid))
@@ -141,28 +142,42 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
             trial.cost = there.cost;
         return trial;
     };
-    const auto straightOrBent = [&](double lambda) {
-        constexpr double hopeless = 30.0;  // times the promise: no bend makes up for such a loss
+    const auto step = [&](double lambda) {
         const VectorXd d = dampedStep(at, theta, box, lambda);
         if (d.isZero(0.0))
             return Trial {theta, at.cost};
-        auto straight = tried(theta + d);
+        auto trial = tried(theta + d);
+        if (!chord)
+            return trial;
+        constexpr int mostCorrections = 4;
+        constexpr double kept = 0.8;    // of the promise, which is good enough
+        constexpr double little = 0.1;  // of the promise, which is not worth another correction
         const double promise = -d.dot(2.0 * at.g + at.N * d);
-        if (!curvature || straight.cost - at.cost > hopeless * promise)
-            return straight;
-        const VectorXd pull = curvature(theta, d);
-        if (pull.size() == 0)
-            return straight;
-        auto bent = tried(theta + d + 0.5 * bendOf(at, theta, d, pull, box, lambda));
-        return bent.cost < straight.cost ? bent : straight;
+        for (int n = 0; n < mostCorrections && std::isfinite(trial.cost); ++n) {
+            const double lost = trial.cost - (at.cost - promise);
+            if (lost < (1.0 - kept) * promise)
+                break;
+            const VectorXd pull = chord();
+            if (pull.size() == 0)
+                break;
+            const VectorXd made = trial.theta - theta;
+            auto next = tried(trial.theta + correctionOf(at, trial.theta, made, pull, box, lambda));
+            if (!(next.cost < trial.cost))
+                break;
+            const double won = trial.cost - next.cost;
+            trial = std::move(next);
+            if (won < std::max(0.5 * lost, little * promise))
+                break;
+        }
+        return trial;
     };
-    Damping damping(options.firstDamping, curvature ? 2.0 : 3.0);  // a step that follows the bend costs more
+    Damping damping(options.firstDamping);
     for (;;) {
         progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the parameters");
         ++result.iterations;
         Trial next;
         for (damping.begin(); damping.isInReach(); damping.refuse()) {
-            next = straightOrBent(damping.lambda());
+            next = step(damping.lambda());
             if (next.cost < at.cost || next.theta == theta)
                 break;
         }

@@ -27,9 +27,9 @@ struct LeastSquaresOptions {
 /// (a simulation that runs away); the search then shortens its step.
 using NormalEvaluation = std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>;
 
-/// J^T r'' at a place whose slopes were asked for last, r'' = d^2 r(theta + h step)/dh^2 at h = 0: how the residuals
-/// bend along a step, as the parameters see it. Empty where it is not known.
-using Curvature = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, const Eigen::VectorXd& step)>;
+/// J^T r with r of the place that was evaluated last and J of the place whose slopes were asked for last. Empty where
+/// it is not known.
+using ChordGradient = std::function<Eigen::VectorXd()>;
 
 /// Levenberg and Marquardt's search within bounds ([B 4.3.1]) on a problem that is only known through its normal
 /// equations, so that long records never stand in memory as one Jacobian:
@@ -37,13 +37,15 @@ using Curvature = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, co
 /// a parameter that a step would take out stops at its bound, and the step of the others is solved for again. The
 /// damping lambda falls before each step and rises until one lowers the cost at all: slopes cost more than
 /// steps, and in a curved valley the boldest step that goes down leads further than the one that goes down most. Where
-/// the curvature is known a step follows the valley's bend if that leads lower (geodesic acceleration, see Search.h):
-///     (N + lambda diag N) a = -J^T r'',   theta + d + a/2.
+/// the chord's gradient is known, a step that does not keep its promise is corrected with the slopes that are there
+/// (a chord method), as long as that brings it down by half: parameters that the residuals hold fast follow those that
+/// they hardly see round the bend of a valley, at the price of an evaluation without slopes,
+///     (N + lambda diag N) a = -(J^T r(theta + d) + lambda diag N d),   d <- d + a.
 /// Where there are no bounds and a triangular factor can be had, search() squares no condition number.
 /// @param theta  start, then result; a start out of bounds is moved to them
 /// @returns costs r^T r. Throws Error (usage) for options that make no sense, (cancelled) when progress says so.
 SearchSummary minimize(const NormalEvaluation&, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
                        const Eigen::VectorXd& upper, const LeastSquaresOptions&, const Progress& = {},
-                       const Curvature& = {});
+                       const ChordGradient& = {});
 
 }  // namespace excursion
