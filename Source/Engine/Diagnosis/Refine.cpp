@@ -45,7 +45,6 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-4};
         if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
             constexpr double noise = 0.5;  // of the cost, half the sum of squares
-            alongTheFloor.maximumIterations = 15;
             alongTheFloor.costTolerance = noise / std::max(1.0, summary.finalCost);
         }
         return run(alongTheFloor, false, true, 0.5, 1.0);
