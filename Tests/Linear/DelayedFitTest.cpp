@@ -144,11 +144,16 @@ TEST_CASE("fitAtDelay takes the delay it is given, and senseless options are ref
     CHECK((back.value - data.value).norm() < 1e-14 * data.value.norm());
     // A response late by 1 ms, looked for within 0.1 ms: the lowest cost is at the end.
     DelayedFitOptions narrow;
-    narrow.least = -1e-4;
-    narrow.most = 1e-4;
     narrow.scan = 5;
-    const auto edge = fitDelayed(late(1e-3, 0.0, 1), narrow);
-    CHECK(edge.atEdge);
+    for (const double reach : {1e-4, 7.3e-5, 9.1e-5}) {
+        narrow.least = -reach;
+        narrow.most = reach;
+        const auto edge = fitDelayed(late(1e-3, 0.0, 1), narrow);
+        INFO(reach);
+        CHECK(edge.atEdge);
+        CHECK(edge.termination == Termination::atBound);
+        CHECK(edge.delay == -reach);
+    }
     narrow.most = -1e-3;
     refused(Error::Kind::usage, "range", [&] { fitDelayed(data, narrow); });
     narrow = {};

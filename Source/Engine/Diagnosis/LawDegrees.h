@@ -19,11 +19,12 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
 /// Law k without its highest coefficients theta_b, as many as a raise brings, and the other parameters theta_r where
 /// the covariance C of the last fit has the least cost then:
 ///     theta_r <- theta_r - C_rb C_bb^-1 theta_b,   C_rr <- C_rr - C_rb C_bb^-1 C_br.
-/// No fit is needed: near its minimum the cost is a parabola.
+/// No fit is needed: near its minimum the cost is a parabola. The model has the covariance of its fit, and the law more
+/// than `by` degrees.
 Model withLowerLaw(const Model&, std::size_t k, int by = 4);
 
 /// Takes back what laws were raised by, where that no longer pays: at once, by the covariance of the fit by simulation
-/// whose summary is given, which follows. Each is checked by a simulation.
+/// whose summary is given, whose cost follows. Each is checked by a simulation.
 void lowerAsItPays(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
 
 }  // namespace excursion

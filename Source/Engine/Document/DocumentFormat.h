@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-/// What every JSON document begins with: the name of its format and the version of that. One constant a format, which
-/// its writer and its reader share.
+/// What a JSON document begins with: the name of its format and the version of that. A format that is read has one
+/// constant, which its writer and its reader share.
 struct DocumentFormat {
     std::string_view name;
     int version = 1;

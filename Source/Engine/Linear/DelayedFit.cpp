@@ -118,8 +118,26 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
     const double unit = 1.0 / (2.0 * std::numbers::pi * data.frequency.back());
     auto here = result.fit;  // at the delay that was tried last
     double tried = result.delay;
-    const auto evaluate = [&](const Eigen::VectorXd& theta, bool, NormalEquations& sum) {
-        if (const double delay = unit * theta[0]; delay != tried) {
+    const auto tells = [&](const DelayColumn& column) {
+        return std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines()));
+    };
+    if (const auto column = delayColumn(here, delayed(data, tried)); !tells(column)) {
+        result.standardError = standardErrorOf(column, result.fit, data);
+        result.end(Termination::undetermined);
+        return;
+    }
+    const Eigen::VectorXd lower = Eigen::VectorXd::Constant(1, least / unit),
+                          upper = Eigen::VectorXd::Constant(1, most / unit);
+    Eigen::VectorXd theta = Eigen::VectorXd::Constant(1, result.delay / unit);
+    // The ends of the range, and the start, are those that were given to the last digit.
+    const auto delayOf = [&, start = theta[0], begun = result.delay](double at) {
+        return at == start      ? begun
+               : at <= lower[0] ? least
+               : at >= upper[0] ? most
+                                : std::clamp(unit * at, least, most);
+    };
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool, NormalEquations& sum) {
+        if (const double delay = delayOf(at[0]); delay != tried) {
             here = refinePoles(result.fit.sections, delayed(data, delay), refinement).fit;
             tried = delay;
         }
@@ -136,13 +154,10 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
     LeastSquaresOptions search;
     search.maximumIterations = 40;
     search.costTolerance = 1e-9;  // a thousandth of the standard error, squared, beside as many lines
-    Eigen::VectorXd theta = Eigen::VectorXd::Constant(1, result.delay / unit);
-    const Eigen::VectorXd lower = Eigen::VectorXd::Constant(1, least / unit),
-                          upper = Eigen::VectorXd::Constant(1, most / unit);
     static_cast<SearchSummary&>(result) = minimize(evaluate, theta, lower, upper, search);
     const auto column = delayColumn(result.fit, delayed(data, result.delay));
     result.standardError = standardErrorOf(column, result.fit, data);
-    if (!(std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines()))))
+    if (!tells(column))
         result.end(Termination::undetermined);
 }
 
