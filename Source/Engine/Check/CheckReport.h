@@ -10,8 +10,19 @@
 
 namespace excursion {
 
+/// What stands between a cone and the samples of its pressure: a microphone rolls off towards 0 Hz, a room answers.
+struct SoundPath {
+    double rollOff = 0.0;  ///< Hz, corner of a first-order high-pass jf/(jf + rollOff); 0: none
+    double left = 0.0;     ///< rms of what remains of the sound after that, relative to it
+    double noise = 0.0;    ///< the same of its noise alone
+
+    /// A model would take what is left for the loudspeaker's.
+    bool isOpen() const;
+};
+
 /// Something wrong with a take. Kinds: channel-dead, clipping, dc-offset, not-settled, poor-repeatability, low-snr,
-/// hum, clock-drift, dropout, rest-jump, excitation, gain-jump, overload, mislabelled, channel-delay, polarity; and
+/// hum, clock-drift, dropout, rest-jump, excitation, gain-jump, overload, mislabelled, channel-delay, polarity,
+/// sound-path, roll-off, coupling; and
 /// assumption: the voltage was not measured, or the reader of a foreign file had to assume something.
 struct Problem {
     std::string kind;
@@ -45,7 +56,8 @@ struct ChannelFigures {
 
 struct CheckReport {
     std::vector<ChannelFigures> channels;
-    std::vector<Problem> problems;  ///< the fatal ones first
+    std::vector<Problem> problems;   ///< the fatal ones first
+    std::optional<SoundPath> sound;  ///< of the pressure, where a motion tells it
 
     bool fitForUse() const;       ///< no problem is fatal
     std::string verdict() const;  ///< one sentence

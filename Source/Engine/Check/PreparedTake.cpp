@@ -66,7 +66,14 @@ const CheckReport& PreparedTake::report() const
 const Record& PreparedTake::record() const
 {
     measurement();  // refuses a frequency response
-    std::call_once(state_->cut, [this] { state_->record = makeRecord(*state_->averages); });
+    std::call_once(state_->cut, [this] {
+        RecordOptions options;
+        if (const auto& sound = report().sound) {
+            options.setAside = sound->isOpen() ? std::vector {Quantity::pressure} : std::vector<Quantity> {};
+            options.microphoneCorner = sound->rollOff;
+        }
+        state_->record = makeRecord(*state_->averages, options);
+    });
     return state_->record;
 }
 

@@ -30,9 +30,10 @@ public:
     /// Made when it is first asked for.
     const CheckReport& report() const;
 
-    /// The take cut into sections (MakeRecord.h, with its default options), made when it is first asked for; a copy of
-    /// it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and when the take is a frequency
-    /// response.
+    /// The take cut into sections (MakeRecord.h), with the pressure as the check has found its path
+    /// (CheckReport::sound): corrected by the microphone's roll-off, or set aside. Made when it is first asked for; a
+    /// copy of it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and when the take is a
+    /// frequency response.
     const Record& record() const;
 
 private:

@@ -5,6 +5,7 @@
 #include "Engine/Check/Overload.h"
 #include "Engine/Check/PeriodCheck.h"
 #include "Engine/Check/PhysicsCheck.h"
+#include "Engine/Check/SoundPath.h"
 #include "Engine/Check/WaveformCheck.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
@@ -170,6 +171,8 @@ CheckReport check(const AveragedPeriods& averages)
                     judgeable[c] = false;
         if (labelled)
             checkPhysics(averages, judgeable, report.channels, problems);
+        if (labelled && report.fitForUse())
+            checkSoundPath(averages, alive, report);
     }
     std::stable_sort(problems.begin(), problems.end(),
                      [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });

@@ -22,27 +22,35 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
+    work.beginUncoupled();
     const bool inTime = take.inTime() != nullptr;
     const auto verdict = [&] { return work.ladder().verdict; };
-    // What no effect explains by itself several may explain together: those of a frequency response at once, and where
-    // the last one came in by itself.
-    bool mayBeTogether = !inTime || verdict() == Verdict::unknownEffect;
-    const double searched = mayBeTogether ? 0.7 : begun;
-    if (std::exchange(mayBeTogether, false) && work.addTogether(progress.part(begun, searched)))
-        tell();
-    // of a rung: none has an effect twice
-    const double share = (done - searched) / static_cast<double>(catalogue().size());
-    while (verdict() == Verdict::missingEffect || (mayBeTogether && verdict() == Verdict::unknownEffect)) {
-        const double at = searched + share * static_cast<double>(work.ladder().rungs.size() - 1);
-        const auto part = progress.part(at, at + share);
-        mayBeTogether = false;
-        if ((!inTime || !work.addTogether(part.part(0.0, 0.7))) && verdict() == Verdict::missingEffect) {
-            tell();  // its diagnosis stands
-            work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
-            mayBeTogether = inTime;
+    const auto climb = [&] {
+        // What no effect explains by itself several may explain together: those of a frequency response at once, and
+        // where the last one came in by itself.
+        bool mayBeTogether = !inTime || verdict() == Verdict::unknownEffect;
+        const double searched = mayBeTogether ? 0.7 : begun;
+        if (std::exchange(mayBeTogether, false) && work.addTogether(progress.part(begun, searched)))
+            tell();
+        // of a rung: none has an effect twice
+        const double share = (done - searched) / static_cast<double>(catalogue().size());
+        while (verdict() == Verdict::missingEffect || (mayBeTogether && verdict() == Verdict::unknownEffect)) {
+            const double at = searched + share * static_cast<double>(work.ladder().rungs.size() - 1);
+            const auto part = progress.part(at, at + share);
+            mayBeTogether = false;
+            if ((!inTime || !work.addTogether(part.part(0.0, 0.7))) && verdict() == Verdict::missingEffect) {
+                tell();  // its diagnosis stands
+                work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
+                mayBeTogether = inTime;
+            }
         }
+        tell();
+    };
+    climb();
+    if (verdict() == Verdict::unknownEffect && work.beginUncoupled()) {
+        told = 0;
+        climb();
     }
-    tell();
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);
     if (inTime)  // the diagnosis of a frequency response has told them

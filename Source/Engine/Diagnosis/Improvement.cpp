@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Improvement.h"
 
+#include "Engine/Diagnosis/FindCoupling.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/RungsTo.h"
 #include "Engine/Diagnosis/StepsByResponse.h"
+#include "Engine/Diagnosis/Sums.h"
 #include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/Whole.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/Coupling.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/OutputError.h"
@@ -93,11 +97,40 @@ void Improvement::begin(const Progress& progress)
         throw Error(Error::Kind::data, "The take is not fit for use: " + take_.report().verdict());
     Rung rung;
     auto data = dataOf(take_);
+    if (auto* record = std::get_if<Record>(&data))
+        uncouple(*record, coupling_);
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
     rung = judged(std::move(rung), data, progress.part(0.4, 1.0));
     data_ = std::move(data);
     ladder_.rungs.clear();
     keep(std::move(rung));
+}
+
+bool Improvement::beginUncoupled(const Progress& progress)
+{
+    const auto* record = std::get_if<Record>(&data_);
+    if (!record || coupling_ > 0.0 || take_.measurement().coupling > 0.0 || ladder_.rungs.empty())
+        return false;
+    const auto& last = ladder_.rungs.back();
+    const auto* behind = last.diagnosis.verdict == Verdict::unknownEffect ? &last.model : nullptr;
+    if (last.diagnosis.verdict == Verdict::missingEffect)
+        if (const auto& named = last.diagnosis.ranking.front();
+            named.confirmedChiSquaredPerValue > 0.0 && named.confirmedChiSquaredPerValue < nearNoise)
+            behind = &named.model;
+    if (!behind || behind->components.empty())
+        return false;
+    const double corner = findCoupling(*behind, *record, options_.diagnose.fit, progress.part(0.0, 0.3));
+    if (!(corner > 0.0))
+        return false;
+    coupling_ = corner;
+    begin(progress.part(0.3, 1.0));
+    const auto text = plainText(corner, 2);
+    ladder_.problems.push_back(
+        {"coupling", std::nullopt, corner, "Hz", false,
+         "The laws of the loudspeaker fit the take if all its inputs roll off below " + text
+             + " Hz, as the coupling capacitors of a sound card do. It is corrected by that; write \"coupling\": "
+             + text + " into measurement.json for the other commands."});
+    return true;
 }
 
 bool Improvement::addTogether(const Progress& progress)

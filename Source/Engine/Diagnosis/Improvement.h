@@ -31,6 +31,12 @@ public:
     /// Makes the first rung: the base, with the effects in ImproveOptions::with. Not for a take that is unfit for use.
     void begin(const Progress& = {});
 
+    /// Looks for a coupling of the recorder's inputs (FindCoupling.h) in what the last rung leaves, or its best
+    /// candidate near the noise. Where there is one the take is corrected by it, a problem tells it, and the ladder
+    /// begins again.
+    /// @returns whether it does; never a second time, and not for a take that states its coupling
+    bool beginUncoupled(const Progress& = {});
+
     /// Adds all effects at once that together explain the take, if the last rung's diagnosis indicates several effects,
     /// or none to begin with. It makes the rungs from there to all of them, the largest fall of the error first.
     /// Returns false and does nothing if the diagnosis indicates one effect, if nothing is found, or if the take has no
@@ -60,7 +66,8 @@ private:
 
     PreparedTake take_;
     ImproveOptions options_;
-    Data data_;  ///< what the rungs are compared with
+    Data data_;              ///< what the rungs are compared with
+    double coupling_ = 0.0;  ///< Hz, found
     Ladder ladder_;
 };
 

@@ -2,6 +2,7 @@
 #include "Engine/Estimate/MakeRecord.h"
 
 #include "Engine/Error.h"
+#include "Engine/Estimate/Coupling.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
@@ -322,6 +323,22 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
     record.leadIn = lead;
 }
 
+/// Takes a microphone's high-pass off the pressure.
+void equalize(Record& record, double corner)
+{
+    const auto pressure = record.channelIndex(Quantity::pressure);
+    if (!pressure || !(corner > 0.0))
+        return;
+    for (auto& section : record.sections)
+        for (std::size_t k = 1; k < section.measured[*pressure].size(); ++k) {
+            const std::complex<double> inverse(1.0, -corner / record.frequency(section, k));
+            section.measured[*pressure][k] *= inverse;
+            for (auto* deviation : {&section.deviation, &section.silentDeviation})
+                if (!deviation->empty())
+                    (*deviation)[*pressure][k] *= std::abs(inverse);
+        }
+}
+
 }  // namespace
 
 bool RecordOptions::isValid(std::string* reason) const
@@ -330,6 +347,8 @@ bool RecordOptions::isValid(std::string* reason) const
         return refuse(reason, "the window and the lead-in of a record are positive times in seconds");
     if (!(relativeFloor > 0.0 && relativeFloor < 0.1))
         return refuse(reason, "the relative floor of the noise must lie between 0 and 0.1");
+    if (!(microphoneCorner >= 0.0 && std::isfinite(microphoneCorner)))
+        return refuse(reason, "the corner of a microphone is a frequency in Hz, or 0");
     return true;
 }
 
@@ -346,7 +365,9 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
     const auto inputQuantity = take.input().quantity;
     for (const auto& channel : take.channels)
         if (channel.quantity != inputQuantity && channel.quantity != Quantity::force
-            && (record.electrical || channel.quantity != Quantity::current)) {
+            && (record.electrical || channel.quantity != Quantity::current)
+            && std::find(options.setAside.begin(), options.setAside.end(), channel.quantity)
+                   == options.setAside.end()) {
             record.channels.push_back(channel.quantity);
             record.units.push_back(channel.unit);
         }
@@ -375,6 +396,8 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
         record.wanderDb.resize(record.channels.size());
         addAperiodicSections(take, options, record);
     }
+    uncouple(record, take.coupling);
+    equalize(record, options.microphoneCorner);
     if (record.bandLow <= 0.0)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);

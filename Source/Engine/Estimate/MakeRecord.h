@@ -5,6 +5,7 @@
 #include "Engine/Estimate/Record.h"
 
 #include <string>
+#include <vector>
 
 namespace excursion {
 
@@ -17,6 +18,9 @@ struct RecordOptions {
     /// The smallest error assumed for the weight of a line, relative to the channel's rms: sensors and integration are
     /// not more accurate. -105 dB.
     double relativeFloor = 5.6e-6;
+    std::vector<Quantity> setAside;  ///< channels that nothing is compared with
+    /// Hz: the pressure went through a high-pass jf/(jf + corner), which is taken off; 0: none
+    double microphoneCorner = 0.0;
 
     bool isValid(std::string* reason) const;
 };

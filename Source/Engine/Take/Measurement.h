@@ -67,6 +67,9 @@ struct Measurement {
     std::vector<Channel> channels;
     std::optional<Excitation> excitation;  ///< absent: music, noise or someone else's record
     DriverInfo driver;
+    /// Hz: corner of the high-pass jf/(jf + corner) that all inputs of the recorder share (Coupling.h); 0: none is
+    /// known
+    double coupling = 0.0;
     /// sentences: what the reader of a foreign file or a recording had to assume, left out, or doubts
     std::vector<std::string> remarks {};
 

@@ -226,6 +226,8 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
         parseExcitation(root.at("excitation"), header);
     if (root.has("driver"))
         measurement.driver = parseDriver(root.at("driver"));
+    if (root.has("coupling"))
+        measurement.coupling = notNegative(root.at("coupling"), "a frequency in Hz, 0 or more");
     if (root.has("remarks"))
         for (const auto& remark : root.at("remarks").items())
             measurement.remarks.push_back(remark.text("a sentence"));
@@ -272,6 +274,8 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
         described["microphoneDistance"] = *driver.microphoneDistance;
     if (!described.empty())
         document["driver"] = described;
+    if (measurement.coupling > 0.0)
+        document["coupling"] = measurement.coupling;
     if (!measurement.remarks.empty())
         document["remarks"] = measurement.remarks;
     return document;
