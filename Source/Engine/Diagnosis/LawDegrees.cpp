@@ -18,6 +18,7 @@ struct Gain {
     double cost = 0.0;
     double price = 0.0;
     double coefficients = 0.0;
+    double unit = 1.0;  ///< of the cost: the residuals' variance
 
     bool pays() const { return cost > price; }
 };
@@ -33,7 +34,7 @@ std::optional<Gain> gainOf(const Model& higher, const Model& lower, const Record
                  more = static_cast<double>(freeParameters(higher).size())
                         - static_cast<double>(freeParameters(lower).size());
     const double without = now ? now->cost : std::numeric_limits<double>::infinity();
-    return Gain {without - then->cost, priceOfCoefficient * unit * more, more};
+    return Gain {without - then->cost, priceOfCoefficient * unit * more, more, unit};
 }
 
 }  // namespace
@@ -111,7 +112,8 @@ void lowerAsItPays(Model& model, FitSummary& summary, const Record& record, cons
     while (const auto k = next()) {
         auto lower = withLowerLaw(model, *k);
         const auto gain = gainOf(model, lower, record, sections, options);
-        if (!gain || gain->pays()) {
+        constexpr double unforeseen = 1.0;  // of the unit
+        if (!gain || gain->pays() || gain->cost > (worthOfHighest(model, *k) + unforeseen) * gain->unit) {
             refused.push_back(*k);
             continue;
         }

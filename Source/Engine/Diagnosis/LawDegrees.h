@@ -24,7 +24,8 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
 Model withLowerLaw(const Model&, std::size_t k, int by = 4);
 
 /// Takes back what laws were raised by, where that no longer pays: at once, by the covariance of the fit by simulation
-/// whose summary is given, whose cost follows. Each is checked by a simulation.
+/// whose summary is given, whose cost follows. Each is checked by a simulation: where that leaves more than
+/// the parabola says, the law stays as it is.
 void lowerAsItPays(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
 
 }  // namespace excursion

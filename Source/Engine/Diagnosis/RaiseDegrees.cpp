@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <limits>
 
 namespace excursion {
 
@@ -81,6 +82,17 @@ std::vector<Eigen::Index> highestCoefficients(const Model& model, std::size_t k,
     return highest;
 }
 
+double worthOfHighest(const Model& model, std::size_t k, int by)
+{
+    auto highest = highestCoefficients(model, k, by);
+    std::erase_if(highest, [&](Eigen::Index j) { return model.covariance(j, j) == 0.0; });  // not told by the fit
+    if (highest.empty())
+        return std::numeric_limits<double>::infinity();
+    const Eigen::VectorXd theta = parameterVector(model)(highest);
+    const Eigen::MatrixXd C = model.covariance(highest, highest);
+    return theta.dot(C.ldlt().solve(theta));
+}
+
 std::vector<std::size_t> tooHigh(const Model& model, int by)
 {
     std::vector<std::size_t> result;
@@ -90,14 +102,8 @@ std::vector<std::size_t> tooHigh(const Model& model, int by)
         const auto& component = model.components[k];
         if (!component.effect->law() || component.operatingRange.degree - by < OperatingRange {}.degree)
             continue;
-        auto highest = highestCoefficients(model, k, by);
-        std::erase_if(highest, [&](Eigen::Index j) { return model.covariance(j, j) == 0.0; });  // not told by the fit
-        if (highest.empty())
-            continue;
-        const Eigen::VectorXd theta = parameterVector(model)(highest);
-        const Eigen::MatrixXd C = model.covariance(highest, highest);
-        const double worth = theta.dot(C.ldlt().solve(theta));
-        if (worth <= priceOfCoefficient * static_cast<double>(highest.size()))
+        const auto coefficients = static_cast<double>(highestCoefficients(model, k, by).size());
+        if (worthOfHighest(model, k, by) <= priceOfCoefficient * coefficients)
             result.push_back(k);
     }
     return result;

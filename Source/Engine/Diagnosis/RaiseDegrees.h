@@ -22,9 +22,12 @@ std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&
 /// Places in parameterVector() of what law k has by its `by` highest degrees.
 std::vector<Eigen::Index> highestCoefficients(const Model&, std::size_t k, int by = 4);
 
-/// The laws whose highest coefficients, as many as a raise brings, are worth less than their price at the model's last
-/// fit,
-///     theta^T C^-1 theta <= price * count   with their block C of the model's covariance,
+/// What those coefficients theta are worth at the model's last fit, by their block C of its covariance:
+///     theta^T C^-1 theta,
+/// by which the cost would rise without them, in units of the residuals' variance; infinite where the fit tells none.
+double worthOfHighest(const Model&, std::size_t k, int by = 4);
+
+/// The laws whose highest coefficients, as many as a raise brings, are worth less than their price (worthOfHighest()),
 /// as those of a law can be that was raised while another effect was missing. Numbers of components; none of a law of
 /// the first degree, and none where the covariance is not known.
 std::vector<std::size_t> tooHigh(const Model&, int by = 4);

@@ -43,9 +43,14 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
         LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-4};
+        const bool straight = !canCorrect(model, record, sections);
+        if (straight)  // such steps come less far, and end in a bend unless they are bold
+            alongTheFloor.firstDamping = 1e-7;
         if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
             constexpr double noise = 0.5;  // of the cost, half the sum of squares
             alongTheFloor.costTolerance = noise / std::max(1.0, summary.finalCost);
+            if (straight)
+                alongTheFloor.maximumIterations = 15;
         }
         return run(alongTheFloor, false, true, 0.5, 1.0);
     }

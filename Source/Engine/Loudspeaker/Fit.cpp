@@ -169,8 +169,8 @@ std::size_t residualsOf(const Record& record, const std::vector<std::size_t>& se
     return count;
 }
 
-/// Sections as a model plays them, kept while it stays as it is: a search asks for the slopes of a step that it has
-/// just tried.
+/// Sections as a model played them at its last two places: a search asks for the slopes of the step that it has just
+/// tried, or of the one before it where a correction of that was refused.
 class PlayedSections {
 public:
     const std::vector<SectionFit>& of(const Model& model, const Record& record,
@@ -178,18 +178,24 @@ public:
                                       const Progress& progress)
     {
         const auto now = parameterVector(model);
-        if (fits_.empty() || now != at_) {
+        if (before_.isAt(now))
+            std::swap(last_, before_);
+        if (!last_.isAt(now)) {
             options.gradient = false;
             options.spectra = true;
-            fits_ = outputError(model, record, sections, {}, options, progress);
-            at_ = now;
+            before_ = std::exchange(last_, {now, outputError(model, record, sections, {}, options, progress)});
         }
-        return fits_;
+        return last_.fits;
     }
 
 private:
-    Eigen::VectorXd at_;
-    std::vector<SectionFit> fits_;
+    struct Place {
+        Eigen::VectorXd theta;
+        std::vector<SectionFit> fits;
+
+        bool isAt(const Eigen::VectorXd& where) const { return !fits.empty() && theta == where; }
+    };
+    Place last_, before_;
 };
 
 }  // namespace
@@ -203,6 +209,11 @@ bool FitOptions::isValid(std::string* reason) const
     if (substeps < 0 || threads < 1)
         return refuse(reason, "steps a sample and threads are positive");
     return true;
+}
+
+bool canCorrect(const Model& model, const Record& record, const std::vector<std::size_t>& sections)
+{
+    return hasPeriods(record) && residualsOf(record, sections) * parametersOf(model).size() < roomForSlopes;
 }
 
 FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
@@ -251,8 +262,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());
     PlayedSections played;
-    run.slopes = options.corrected && hasPeriods(record)
-                 && residualsOf(record, sections) * parametersOf(model).size() < roomForSlopes;
+    run.slopes = options.corrected && canCorrect(model, record, sections);
     run.spectra = run.slopes;
     auto summary = search(
         model, record, sections,

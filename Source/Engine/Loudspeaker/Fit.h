@@ -21,7 +21,7 @@ struct FitOptions {
     /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
     /// few more are needed
     bool fedGradient = false;
-    /// on records with periods, unless `fed`: steps are corrected by the slopes of their begin (KeptSlopes.h), which
+    /// unless `fed`, and where canCorrect(): steps are corrected by the slopes of their begin (KeptSlopes.h), which
     /// leads further along the bent valleys at whose end the last digits are
     bool corrected = false;
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
@@ -46,6 +46,9 @@ OperatingRange visitedRange(const Model&, const Record&, int degree = 6);
 /// the model; if the residuals exceed the noise, both are scaled up accordingly.
 FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
                const Progress& = {});
+
+/// Whether a fit can correct its steps here: a record with periods whose slopes are few enough to be kept (256 MiB).
+bool canCorrect(const Model&, const Record&, const std::vector<std::size_t>& sections);
 
 /// Whether an effect with a slow memory is at work, which drifts in the course of a take.
 bool warms(const Model&);

@@ -22,8 +22,9 @@ Eigen::VectorXd KeptSlopes::gradientAt(const std::vector<SectionFit>& fits) cons
         for (std::size_t c = 0; c < slopes_[s].slopes.size(); ++c) {
             const auto& J = slopes_[s].slopes[c];
             const Eigen::VectorXf r = residual.of(c, fits[s].predicted[c]).cast<float>();
-            const Eigen::VectorXd part = (J.transpose() * r).cast<double>();
-            sum = sum.size() == 0 ? part : Eigen::VectorXd(sum + part);
+            if (sum.size() == 0)
+                sum = Eigen::VectorXd::Zero(J.cols());
+            sum += (J.transpose() * r).cast<double>();
         }
     }
     return sum;
