@@ -33,12 +33,14 @@ def some(draw: np.random.Generator, samples: int = 768) -> dict[str, np.ndarray]
 def test_a_take_is_read_as_it_was_written_to_the_last_bit(tmp_path):
     samples = some(np.random.default_rng(1))
     driver = excursion.Driver("Tieftöner", cone_area=0.0213, microphone_distance=0.5)
-    take = excursion.Take(44100.5, excitation=EXCITATION, driver=driver, remarks=["The voltage is assumed."], **samples)
+    remarks = ["The voltage is assumed."]
+    take = excursion.Take(44100.5, excitation=EXCITATION, driver=driver, coupling=2.5, remarks=remarks, **samples)
     take.write(tmp_path / "größer als µ")
     again = excursion.Take.read(tmp_path / "größer als µ")
     assert again.rate == 44100.5
     assert again.excitation == EXCITATION
     assert again.driver == driver
+    assert again.coupling == 2.5
     assert again.remarks == ("The voltage is assumed.",)
     assert list(again) == list(samples)
     for quantity, values in samples.items():

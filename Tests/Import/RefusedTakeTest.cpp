@@ -91,6 +91,7 @@ TEST_CASE("What measurement.json says must be possible")
         {{{"/excitation/band", Json::array({8000, 15})}}, "excitation.band"},
         {{{"/excitation/band", Json::array({15})}}, "excitation.band"},
         {{{"/driver/coneArea", -1}}, "driver.coneArea"},
+        {{{"/coupling", -1}}, "coupling"},
     };
     for (const auto& [changes, contains, kind] : all) {
         CAPTURE(contains);

@@ -225,6 +225,8 @@ TEST_CASE("A take written and read is the same")
         take.driver.name = anyName();
         if (*rc::gen::arbitrary<bool>())
             take.driver.coneArea = 0.02 + 0.01 * within1();
+        if (*rc::gen::arbitrary<bool>())
+            take.coupling = 1.5 + within1();
         const auto N = static_cast<std::size_t>(between(1, 50));
         for (const auto quantity : {Quantity::voltage, Quantity::current, Quantity::pressure}) {
             Channel channel {quantity, std::string(siUnit(quantity)), 1.0 + std::abs(within1()), {}};
@@ -238,6 +240,7 @@ TEST_CASE("A take written and read is the same")
         RC_ASSERT(back.sampleRate == take.sampleRate);
         RC_ASSERT(back.driver.name == take.driver.name);
         RC_ASSERT(back.driver.coneArea == take.driver.coneArea);
+        RC_ASSERT(back.coupling == take.coupling);
         RC_ASSERT(back.channels.size() == take.channels.size());
         for (std::size_t c = 0; c < take.channels.size(); ++c) {
             RC_ASSERT(back.channels[c].quantity == take.channels[c].quantity);

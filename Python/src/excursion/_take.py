@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -92,6 +93,7 @@ class Take:
     :param rate: samples a second, Hz
     :param excitation: what was played in periods; None for music, noise, or what is not known
     :param driver: what is known of the loudspeaker
+    :param coupling: Hz, corner of the high-pass that all inputs of the recorder share; 0 where none is known
     :param remarks: sentences on how the take came about, such as what an import had to assume
     :param units: of arrays that are not in V, A, m, m/s, m/s², Pa or N: a dict from quantity to unit
     :param samples: one array a quantity, all of one length: ``voltage``, ``current``, ``displacement``, ``velocity``,
@@ -106,6 +108,7 @@ class Take:
         *,
         excitation: Excitation | None = None,
         driver: Driver | None = None,
+        coupling: float = 0.0,
         remarks: Sequence[str] = (),
         units: Mapping[str, str] | None = None,
         **samples: ArrayLike,
@@ -113,6 +116,7 @@ class Take:
         self.rate = float(rate)
         self.excitation = excitation
         self.driver = driver if driver is not None else Driver()
+        self.coupling = float(coupling)
         self.remarks = tuple(remarks)
         self.units: dict[str, str] = {}
         self.samples: dict[str, Samples] = {}
@@ -127,6 +131,8 @@ class Take:
 
     def require(self) -> None:
         """Throws Error where the take is not one that the program could read."""
+        if not 0 <= self.coupling < math.inf:
+            raise Error("The corner of the recorder's coupling is a frequency in Hz, 0 or more.", "usage")
         if not 1 <= self.rate <= 1e8:
             raise Error(f"The rate is {self.rate} Hz, expected 1 Hz to 100 MHz.", "usage")
         if "voltage" not in self.samples and "force" not in self.samples:

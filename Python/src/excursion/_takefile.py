@@ -72,6 +72,8 @@ def write_take(take: Take, folder: str | os.PathLike[str]) -> None:
         document["excitation"] = _excitation_json(take.excitation)
     if described := _driver_json(take.driver):
         document["driver"] = described
+    if take.coupling > 0:
+        document["coupling"] = take.coupling
     if take.remarks:
         document["remarks"] = list(take.remarks)
     columns = np.stack([values / scales[quantity] for quantity, values in take.samples.items()], axis=1)
@@ -143,6 +145,7 @@ def _read_header(document: dict[str, Any], folder: Path) -> tuple[Path, list[tup
                 "rate": float(document["sampleRate"]),
                 "excitation": _read_excitation(document.get("excitation")),
                 "driver": Driver(told.get("name") or "", told.get("coneArea"), told.get("microphoneDistance")),
+                "coupling": float(document.get("coupling") or 0.0),
                 "remarks": tuple(str(remark) for remark in document.get("remarks") or ()),
             },
         )

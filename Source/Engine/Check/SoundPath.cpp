@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Check/SoundPath.h"
 
-#include "Engine/Check/PeriodCheck.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Estimate/EstimateFrf.h"
@@ -27,15 +26,13 @@ struct Port {
     double frequency = 0.0, quality = 0.0;  ///< Hz
 };
 
-/// What the acceleration of the cone is made of, over the sound, on the lines of the low band: the measured one, or
-/// what voltage and current tell of it.
+/// The acceleration of the cone over the sound, on the lines of the low band.
 class MotionPerSound {
 public:
-    /// @param parts  the acceleration is a sum of these with real factors
-    void add(double frequency, std::vector<Complex> parts, double relativeVariance)
+    void add(double frequency, Complex ratio, double relativeVariance)
     {
         s_.emplace_back(0.0, 2.0 * std::numbers::pi * frequency);
-        parts_.push_back(std::move(parts));
+        ratio_.push_back(ratio);
         weight_.push_back(1.0 / (relativeVariance + accurate * accurate));
         sum_ += weight_.back();
         noise_ += weight_.back() * relativeVariance;
@@ -49,27 +46,24 @@ public:
     double left(double delay, double corner, const std::optional<Port>& port) const
     {
         const auto K = static_cast<Eigen::Index>(s_.size());
-        const std::size_t parts = parts_.front().size();
-        Eigen::MatrixXd A(2 * K, static_cast<Eigen::Index>(parts * (port ? 3 : 1) + 1));
+        Eigen::MatrixXd A(2 * K, port ? 4 : 2);
         Eigen::VectorXd one = Eigen::VectorXd::Zero(2 * K);
         const double w_c = 2.0 * std::numbers::pi * corner;
         for (Eigen::Index k = 0; k < K; ++k) {
             const auto place = static_cast<std::size_t>(k);
             const Complex s = s_[place], unit = s / std::abs(s_.back());
             const double root = std::sqrt(weight_[place] / sum_);
-            const Complex path = root * s / (s + w_c) * std::exp(-s * delay);
+            const Complex heard = root * s / (s + w_c) * std::exp(-s * delay) * ratio_[place];
             Eigen::Index column = 0;
             const auto put = [&](Complex value) {
                 A(k, column) = value.real();
                 A(K + k, column++) = value.imag();
             };
-            put(path * parts_[place].front() * unit * unit);  // modes of the cone
-            for (const auto& part : parts_[place]) {
-                put(path * part);
-                if (!port)
-                    continue;
+            put(heard);
+            put(heard * unit * unit);  // modes of the cone
+            if (port) {
                 const double w_b = 2.0 * std::numbers::pi * port->frequency;
-                const Complex flow = path * part * w_b * w_b / (s * s + s * w_b / port->quality + w_b * w_b);
+                const Complex flow = heard * w_b * w_b / (s * s + s * w_b / port->quality + w_b * w_b);
                 put(flow);
                 put(flow * s / w_b);
             }
@@ -92,8 +86,7 @@ public:
     }
 
 private:
-    std::vector<Complex> s_;
-    std::vector<std::vector<Complex>> parts_;
+    std::vector<Complex> s_, ratio_;
     std::vector<double> weight_;
     double sum_ = 0.0, noise_ = 0.0;
 };
@@ -151,24 +144,44 @@ Heard bestCorner(const MotionPerSound& sound, double around, const std::optional
     return best;
 }
 
-/// The port whose sound leaves least with the corner at 0.
-Port bestPort(const MotionPerSound& sound, double around)
+/// The port whose sound leaves least without a high-pass.
+/// @param around  s, the delay of a cone without a port; then that of one with it
+Port bestPort(const MotionPerSound& sound, double& around)
 {
     Port best;
     double least = std::numeric_limits<double>::infinity();
-    constexpr double ratio = 1.07;
-    for (double f = 0.7 * sound.lowest(); f < sound.highest(); f *= ratio)
-        for (const double quality : {2.0, 4.0, 8.0, 16.0, 32.0})
-            if (const double left = leftAt(sound, around, 0.0, Port {f, quality}); left < least) {
-                least = left;
-                best = {f, quality};
+    constexpr double step = 1.07, least_Q = 2.0, turns = 1.5, turn = 0.15;
+    const double rough = around;
+    for (double shift = -turns; shift <= turns; shift += turn)
+        for (double f = 0.7 * sound.lowest(); f < sound.highest(); f *= step)
+            for (const double quality : {least_Q, 4.0, 8.0, 16.0, 32.0}) {
+                const double delay = rough + shift / sound.highest();
+                if (const double left = sound.left(delay, 0.0, Port {f, quality}); left < least) {
+                    least = left;
+                    best = {f, quality};
+                    around = delay;
+                }
             }
+    double reach_f = std::log(step), reach_Q = std::log(2.0);
+    constexpr int rounds = 3, steps = 10;
+    for (int n = 0; n < rounds; ++n) {
+        const auto tuned = [&](double logF) { return leftAt(sound, around, 0.0, Port {std::exp(logF), best.quality}); };
+        const double f = std::log(best.frequency);
+        best.frequency = std::exp(leastBetween(f - reach_f, f + reach_f, steps, tuned));
+        const auto damped = [&](double logQ) {
+            return leftAt(sound, around, 0.0, Port {best.frequency, std::exp(logQ)});
+        };
+        const double Q = std::log(best.quality);
+        best.quality = std::exp(leastBetween(std::max(Q - reach_Q, std::log(least_Q)), Q + reach_Q, steps, damped));
+        reach_f *= 0.4;
+        reach_Q *= 0.4;
+    }
     return best;
 }
 
 SoundPath pathOf(const MotionPerSound& sound)
 {
-    const double around = sound.roughDelay();
+    double around = sound.roughDelay();
     SoundPath path;
     path.noise = sound.noise();
     path.left = leftAt(sound, around, 0.0, std::nullopt);
@@ -197,20 +210,6 @@ SoundPath pathOf(const MotionPerSound& sound)
     return path;
 }
 
-/// The quietest level at which voltage, current and pressure are clear of their noise.
-int quietestClear(const AveragedPeriods& averages)
-{
-    constexpr double clear = 40.0;  // dB
-    const auto& take = averages.take();
-    const int loudest = take.excitation->loudest();
-    for (int level = 0; level < loudest; ++level) {
-        const auto isClear = [&](Quantity q) { return signalToNoise(averages, *take.find(q), level) > clear; };
-        if (isClear(Quantity::voltage) && isClear(Quantity::current) && isClear(Quantity::pressure))
-            return level;
-    }
-    return loudest;
-}
-
 }  // namespace
 
 bool SoundPath::isOpen() const
@@ -231,45 +230,35 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
         return std::nullopt;
     const auto motion = std::find_if(take.channels.begin(), take.channels.end(),
                                      [&](const Channel& c) { return isMotion(c.quantity) && lives(c.quantity); });
-    const bool seen = motion != take.channels.end();
-    if (!seen && (input != Quantity::voltage || !lives(Quantity::current)))
+    if (motion == take.channels.end())
         return std::nullopt;
-    // Sound follows a motion whatever the motor does, but only a linear motor tells the motion.
-    const int level = seen ? take.excitation->loudest() : quietestClear(averages);
+    const int level = take.excitation->loudest();
     const auto heard = estimateFrf(take, Quantity::pressure, input, level),
-               told = estimateFrf(take, seen ? motion->quantity : Quantity::current, input, level);
-    const auto s = [&](std::size_t k) { return Complex(0.0, 2.0 * std::numbers::pi * told.frequency[k]); };
-    const auto accelerationFrom = [&](std::size_t k) -> std::vector<Complex> {
-        const auto value = told.value[k];
-        if (seen)
-            return {value * std::pow(s(k), 2 - *integrationsToDisplacement(motion->quantity))};
-        return {s(k), s(k) * value, s(k) * s(k) * value, std::pow(s(k), 1.7) * value};
+               seen = estimateFrf(take, motion->quantity, input, level);
+    const int derivatives = 2 - *integrationsToDisplacement(motion->quantity);
+    const auto accelerationAt = [&](std::size_t k) {
+        return seen.value[k] * std::pow(Complex(0.0, 2.0 * std::numbers::pi * seen.frequency[k]), derivatives);
     };
-    // The cone is the fastest at its resonance, where the coil's impedance is the largest.
-    const auto speedAt = [&](std::size_t k) {
-        return seen ? std::abs(accelerationFrom(k).front()) / told.frequency[k] : 1.0 / std::abs(told.value[k]);
-    };
-    const double lowEnd = 0.25 * told.frequency.back();
+    // The cone is the fastest at its resonance.
+    const auto speedAt = [&](std::size_t k) { return std::abs(accelerationAt(k)) / seen.frequency[k]; };
+    const double lowEnd = 0.25 * seen.frequency.back();
     std::size_t fastest = 0;
-    for (std::size_t k = 1; k < told.value.size() && told.frequency[k] < lowEnd; ++k)
+    for (std::size_t k = 1; k < seen.value.size() && seen.frequency[k] < lowEnd; ++k)
         if (speedAt(k) > speedAt(fastest))
             fastest = k;
-    const double edge = std::min(4.0 * told.frequency[fastest], lowEnd);
+    const double edge = std::min(4.0 * seen.frequency[fastest], lowEnd);
     constexpr double clear = 0.01;  // of the power
     MotionPerSound sound;
-    for (std::size_t k = 0; k < told.value.size() && told.frequency[k] < edge; ++k) {
+    for (std::size_t k = 0; k < seen.value.size() && seen.frequency[k] < edge; ++k) {
         const auto relativeVariance = [&](const Frf& frf) {
             return frf.noiseVariance.empty() ? 0.0 : frf.noiseVariance[k] / std::norm(frf.value[k]);
         };
-        const double variance = relativeVariance(heard) + relativeVariance(told);
-        auto parts = accelerationFrom(k);
-        for (auto& part : parts)
-            part /= heard.value[k];
+        const double variance = relativeVariance(heard) + relativeVariance(seen);
         if (variance < clear)
-            sound.add(told.frequency[k], std::move(parts), variance);
+            sound.add(seen.frequency[k], accelerationAt(k) / heard.value[k], variance);
     }
     constexpr std::size_t fewest = 12;
-    if (sound.lines() < (seen ? 1 : 2) * fewest)
+    if (sound.lines() < fewest)
         return std::nullopt;
     return pathOf(sound);
 }
