@@ -53,6 +53,11 @@ void LiveLadder::row(const std::string& label, const std::vector<std::string>& c
 void LiveLadder::show(const Rung& rung)
 {
     const auto& comparison = rung.comparison;
+    if (rung.added.empty() && rungs_ > 0) {
+        terminal_.say("\nThe recorder's coupling was found. The ladder begins again without it:");
+        rungs_ = 0;
+        titles_.clear();
+    }
     if (rungs_ == 0)
         begin(comparison);
     std::vector<std::string> cells;

@@ -59,21 +59,22 @@ TEST_CASE("The coupling of a recorder is found behind the laws of a loudspeaker"
     CHECK(problem->sentence.find("\"coupling\": 2.") != std::string::npos);
     CHECK(chiSquaredOf(ladder) < 1.3);
 
-    // A take that states it needs no search, for whatever is asked of it.
+    // A take that states it is free of it, but for what has not settled when the periods begin.
+    const PreparedTake untouched(straight), behind(take);
     take.coupling = corner;
-    const auto told = improve(take);
-    CHECK_FALSE(couplingOf(told));
-    CHECK(added(told) == std::vector<std::string> {"stiffness"});
-    CHECK(chiSquaredOf(told) < 1.3);
-    const auto &record = PreparedTake(take).record(), &truth = PreparedTake(straight).record();
+    const PreparedTake told(take);
+    const auto &record = told.record(), &before = behind.record(), &truth = untouched.record();
+    REQUIRE(record.sections.size() == truth.sections.size());
+    REQUIRE_FALSE(record.sections.empty());
     for (std::size_t s = 0; s < record.sections.size(); ++s)
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
-            double error = 0.0, noise = 0.0;
+            double left = 0.0, taken = 0.0;
             for (const int line : record.sections[s].excited) {
                 const auto k = static_cast<std::size_t>(line);
-                error += std::norm(record.sections[s].measured[c][k] - truth.sections[s].measured[c][k]);
-                noise += std::pow(truth.sections[s].deviation[c][k], 2);
+                left += std::norm(record.sections[s].measured[c][k] - truth.sections[s].measured[c][k]);
+                taken += std::norm(before.sections[s].measured[c][k] - truth.sections[s].measured[c][k]);
             }
-            CHECK(error < 4.0 * noise);
+            INFO(name(record.channels[c]) << ", section " << s << ": " << left / taken);
+            CHECK(left < 0.01 * taken);
         }
 }

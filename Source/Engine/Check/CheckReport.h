@@ -12,9 +12,10 @@ namespace excursion {
 
 /// What stands between a cone and the samples of its pressure: a microphone rolls off towards 0 Hz, a room answers.
 struct SoundPath {
-    double rollOff = 0.0;  ///< Hz, corner of a first-order high-pass jf/(jf + rollOff); 0: none
-    double left = 0.0;     ///< rms of what remains of the sound after that, relative to it
-    double noise = 0.0;    ///< the same of its noise alone
+    Quantity motion = Quantity::displacement;  ///< what the pressure was compared with
+    double rollOff = 0.0;                      ///< Hz, corner of a first-order high-pass jf/(jf + rollOff); 0: none
+    double left = 0.0;                         ///< rms of what remains of the sound after that, relative to it
+    double noise = 0.0;                        ///< the same of its noise alone
 
     /// A model would take what is left for the loudspeaker's.
     bool isOpen() const;

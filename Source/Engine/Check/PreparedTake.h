@@ -31,9 +31,9 @@ public:
     const CheckReport& report() const;
 
     /// The take cut into sections (MakeRecord.h), with the pressure as the check has found its path
-    /// (CheckReport::sound): corrected by the microphone's roll-off, or set aside. Made when it is first asked for; a
-    /// copy of it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and when the take is a
-    /// frequency response.
+    /// (CheckReport::sound): corrected by the microphone's roll-off, or set aside; so it checks the take. Made when it
+    /// is first asked for; a copy of it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and
+    /// when the take is a frequency response.
     const Record& record() const;
 
 private:

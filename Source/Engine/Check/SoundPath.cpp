@@ -183,8 +183,9 @@ SoundPath pathOf(const MotionPerSound& sound)
 {
     double around = sound.roughDelay();
     SoundPath path;
+    double straight = 0.0;  // left without a high-pass
     path.noise = sound.noise();
-    path.left = leftAt(sound, around, 0.0, std::nullopt);
+    path.left = straight = leftAt(sound, around, 0.0, std::nullopt);
     // Fewer unknowns come first: what a cone alone explains is neither a microphone's nor a port's.
     constexpr double explains = 0.5;
     const auto explained = [&] { return path.left < std::max(1.5 * path.noise, accurate); };
@@ -198,7 +199,7 @@ SoundPath pathOf(const MotionPerSound& sound)
         return path;
     const auto port = bestPort(sound, around);
     if (const double left = leftAt(sound, around, 0.0, port); left < explains * path.left) {
-        path.left = left;
+        path.left = straight = left;
         path.rollOff = 0.0;
     }
     if (explained())
@@ -206,6 +207,12 @@ SoundPath pathOf(const MotionPerSound& sound)
     if (const auto heard = bestCorner(sound, around, port); heard.left < explains * path.left) {
         path.left = heard.left;
         path.rollOff = heard.corner;
+    }
+    // A corner that leaves much is none: it only bends what a room does.
+    constexpr double clearly = 0.2;
+    if (path.rollOff > 0.0 && !explained() && path.left > clearly * straight) {
+        path.rollOff = 0.0;
+        path.left = straight;
     }
     return path;
 }
@@ -226,7 +233,7 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
         return channel && alive[static_cast<std::size_t>(channel - take.channels.data())];
     };
     const auto input = take.input().quantity;
-    if (!take.hasPeriods() || !lives(input) || !lives(Quantity::pressure))
+    if (!take.hasPeriods() || take.excitation->settlePeriods < 1 || !lives(input) || !lives(Quantity::pressure))
         return std::nullopt;
     const auto motion = std::find_if(take.channels.begin(), take.channels.end(),
                                      [&](const Channel& c) { return isMotion(c.quantity) && lives(c.quantity); });
@@ -235,6 +242,8 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
     const int level = take.excitation->loudest();
     const auto heard = estimateFrf(take, Quantity::pressure, input, level),
                seen = estimateFrf(take, motion->quantity, input, level);
+    if (heard.noiseVariance.empty() || seen.noiseVariance.empty())
+        return std::nullopt;
     const int derivatives = 2 - *integrationsToDisplacement(motion->quantity);
     const auto accelerationAt = [&](std::size_t k) {
         return seen.value[k] * std::pow(Complex(0.0, 2.0 * std::numbers::pi * seen.frequency[k]), derivatives);
@@ -250,9 +259,7 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
     constexpr double clear = 0.01;  // of the power
     MotionPerSound sound;
     for (std::size_t k = 0; k < seen.value.size() && seen.frequency[k] < edge; ++k) {
-        const auto relativeVariance = [&](const Frf& frf) {
-            return frf.noiseVariance.empty() ? 0.0 : frf.noiseVariance[k] / std::norm(frf.value[k]);
-        };
+        const auto relativeVariance = [&](const Frf& frf) { return frf.noiseVariance[k] / std::norm(frf.value[k]); };
         const double variance = relativeVariance(heard) + relativeVariance(seen);
         if (variance < clear)
             sound.add(seen.frequency[k], accelerationAt(k) / heard.value[k], variance);
@@ -260,7 +267,9 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
     constexpr std::size_t fewest = 12;
     if (sound.lines() < fewest)
         return std::nullopt;
-    return pathOf(sound);
+    auto path = pathOf(sound);
+    path.motion = motion->quantity;
+    return path;
 }
 
 void checkSoundPath(const AveragedPeriods& averages, const std::vector<bool>& alive, CheckReport& report)
@@ -273,9 +282,12 @@ void checkSoundPath(const AveragedPeriods& averages, const std::vector<bool>& al
     if (path->isOpen()) {
         problems.push_back(
             {"sound-path", Quantity::pressure, decibelsOf(path->left * path->left), "dB", false,
-             "The pressure channel does not follow the motion of the cone: " + figure(100.0 * path->left)
-                 + " % of it come from elsewhere (a room, another source). It is set aside; to use it, move the "
-                   "microphone to a few centimetres before the cone, or measure in the open."});
+             "The pressure does not follow the cone: beside the " + std::string(name(path->motion)) + ", "
+                 + figure(100.0 * path->left)
+                 + " % of it come from elsewhere (a room, another source, or a sensor of the motion that rolls off). "
+                   "It "
+                   "is set aside; to use it, move the microphone to a few centimetres before the cone, or measure in "
+                   "the open."});
         return;
     }
     if (path->rollOff > 0.0)

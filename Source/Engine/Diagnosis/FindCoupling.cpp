@@ -25,16 +25,16 @@ public:
         options_.search = {4, 1e-3};
     }
 
-    FitSummary at(double corner) const
+    FitSummary at(double corner, const Progress& progress) const
     {
         auto record = record_;
         uncouple(record, corner);
         auto model = model_;
-        return quickFit(model, record, sections_, options_);
+        return quickFit(model, record, sections_, options_, progress);
     }
-    double costAt(double corner) const
+    double costAt(double corner, const Progress& progress) const
     {
-        const auto summary = at(corner);
+        const auto summary = at(corner, progress);
         return summary.usable() ? summary.finalCost : std::numeric_limits<double>::infinity();
     }
 
@@ -47,12 +47,13 @@ private:
 
 }  // namespace
 
-double findCoupling(const Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+double findCoupling(const Model& model, const Record& record, const FitOptions& options, bool allElseIsFound,
+                    const Progress& progress)
 {
     if (!hasPeriods(record) || !record.noiseKnown || !hasLaws(model))
         return 0.0;
     const Coupled coupled(model, record, options);
-    const auto before = coupled.at(0.0);
+    const auto before = coupled.at(0.0, progress.part(0.0, 0.0));
     if (!before.usable())
         return 0.0;
     constexpr double first = 0.03, worthwhile = 0.05, settled = 0.02, highest = 2.0;
@@ -60,7 +61,8 @@ double findCoupling(const Model& model, const Record& record, const FitOptions& 
     double corner = 0.0, cost = before.finalCost, reach = first * record.bandLow;
     for (int n = 0; n < rounds; ++n) {
         progress.at(static_cast<double>(n) / rounds, "looking for the recorder's coupling");
-        const double below = coupled.costAt(corner - reach), above = coupled.costAt(corner + reach);
+        const auto part = progress.part(static_cast<double>(n) / rounds, static_cast<double>(n) / rounds);
+        const double below = coupled.costAt(corner - reach, part), above = coupled.costAt(corner + reach, part);
         const double bend = below - 2.0 * cost + above;
         if (!(bend > 0.0) || !std::isfinite(bend))
             break;
@@ -68,7 +70,7 @@ double findCoupling(const Model& model, const Record& record, const FitOptions& 
         if (n == 0 && (step <= 0.0 || promised < worthwhile * cost))
             return 0.0;
         const double next = std::clamp(corner + step, 0.0, highest * record.bandLow);
-        const double there = coupled.costAt(next);
+        const double there = coupled.costAt(next, part);
         if (!(there < cost))
             break;
         const bool arrived = std::abs(next - corner) < settled * next;
@@ -78,11 +80,11 @@ double findCoupling(const Model& model, const Record& record, const FitOptions& 
             break;
         reach = std::max(0.1 * corner, 0.3 * reach);
     }
-    const auto after = coupled.at(corner);
-    const bool toTheNoise = after.chiSquaredPerValue < atNoise && after.onlyNoise
-                            && !(before.chiSquaredPerValue < atNoise && before.onlyNoise);
-    constexpr double halved = 0.5;
-    return corner > 0.0 && (toTheNoise || after.chiSquaredPerValue < halved * before.chiSquaredPerValue) ? corner : 0.0;
+    const auto after = coupled.at(corner, progress.part(1.0, 1.0));
+    const double fall = after.chiSquaredPerValue / before.chiSquaredPerValue;
+    constexpr double halved = 0.5, clearly = 0.8;
+    const bool toTheNoise = after.chiSquaredPerValue < atNoise && after.onlyNoise && fall < clearly;
+    return corner > 0.0 && (toTheNoise || (allElseIsFound && fall < halved)) ? corner : 0.0;
 }
 
 }  // namespace excursion

@@ -22,7 +22,7 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
-    work.beginUncoupled();
+    work.beginUncoupled(progress.part(begun, begun));
     const bool inTime = take.inTime() != nullptr;
     const auto verdict = [&] { return work.ladder().verdict; };
     const auto climb = [&] {
@@ -47,9 +47,15 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
         tell();
     };
     climb();
-    if (verdict() == Verdict::unknownEffect && work.beginUncoupled()) {
+    if (const auto before = work;
+        verdict() == Verdict::unknownEffect && work.beginUncoupled(progress.part(done, done))) {
         told = 0;
         climb();
+        const auto leaves = [](const Improvement& one) {
+            return one.ladder().rungs.back().comparison.chiSquaredPerValue;
+        };
+        if (!(leaves(work) < leaves(before)))
+            work = before;
     }
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);

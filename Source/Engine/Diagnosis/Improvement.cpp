@@ -75,6 +75,19 @@ std::variant<Record, Spectra> dataOf(const PreparedTake& take)
     return take.record();
 }
 
+Problem couplingProblem(double corner)
+{
+    const auto text = plainText(corner, 2);
+    return {"coupling",
+            std::nullopt,
+            corner,
+            "Hz",
+            false,
+            "The laws of the loudspeaker fit the take if all its inputs roll off below " + text
+                + " Hz, as the coupling capacitors of a sound card do. It is corrected by that; write \"coupling\": "
+                + text + " into measurement.json for the other commands."};
+}
+
 }  // namespace
 
 Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const Progress& progress)
@@ -91,17 +104,23 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
     }
 }
 
-void Improvement::begin(const Progress& progress)
+void Improvement::begin(const Progress& progress) { beginBehind(0.0, progress); }
+
+void Improvement::beginBehind(double coupling, const Progress& progress)
 {
     if (!take_.report().fitForUse())
         throw Error(Error::Kind::data, "The take is not fit for use: " + take_.report().verdict());
     Rung rung;
     auto data = dataOf(take_);
     if (auto* record = std::get_if<Record>(&data))
-        uncouple(*record, coupling_);
+        uncouple(*record, coupling);
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
     rung = judged(std::move(rung), data, progress.part(0.4, 1.0));
     data_ = std::move(data);
+    coupling_ = coupling;
+    ladder_.problems = take_.report().problems;
+    if (coupling > 0.0)
+        ladder_.problems.push_back(couplingProblem(coupling));
     ladder_.rungs.clear();
     keep(std::move(rung));
 }
@@ -112,25 +131,18 @@ bool Improvement::beginUncoupled(const Progress& progress)
     if (!record || coupling_ > 0.0 || take_.measurement().coupling > 0.0 || ladder_.rungs.empty())
         return false;
     const auto& last = ladder_.rungs.back();
-    const auto* behind = last.diagnosis.verdict == Verdict::unknownEffect ? &last.model : nullptr;
+    const bool allIsFound = last.diagnosis.verdict == Verdict::unknownEffect;
+    const auto* behind = allIsFound ? &last.model : nullptr;
     if (last.diagnosis.verdict == Verdict::missingEffect)
         if (const auto& named = last.diagnosis.ranking.front();
             named.confirmedChiSquaredPerValue > 0.0 && named.confirmedChiSquaredPerValue < nearNoise)
             behind = &named.model;
     if (!behind || behind->components.empty())
         return false;
-    const double corner = findCoupling(*behind, *record, options_.diagnose.fit, progress.part(0.0, 0.3));
-    if (!(corner > 0.0))
-        return false;
-    coupling_ = corner;
-    begin(progress.part(0.3, 1.0));
-    const auto text = plainText(corner, 2);
-    ladder_.problems.push_back(
-        {"coupling", std::nullopt, corner, "Hz", false,
-         "The laws of the loudspeaker fit the take if all its inputs roll off below " + text
-             + " Hz, as the coupling capacitors of a sound card do. It is corrected by that; write \"coupling\": "
-             + text + " into measurement.json for the other commands."});
-    return true;
+    const double corner = findCoupling(*behind, *record, options_.diagnose.fit, allIsFound, progress.part(0.0, 0.3));
+    if (corner > 0.0)
+        beginBehind(corner, progress.part(0.3, 1.0));
+    return corner > 0.0;
 }
 
 bool Improvement::addTogether(const Progress& progress)
@@ -245,7 +257,7 @@ void Improvement::use(Data data)
             if (auto comparison = tryCompare(rung.model, *now)) {
                 rung.comparison = std::move(*comparison);
                 rung.diagnosis = diagnose(rung.model, *now, rung.comparison, options_.diagnose);
-                rung.diagnosis.problems = take_.report().problems;
+                rung.diagnosis.problems = ladder_.problems;
             }
     ladder_.rungs = std::move(rungs);
     data_ = std::move(data);
@@ -277,7 +289,7 @@ Rung Improvement::judged(Rung rung, const Data& data, const Progress& progress) 
 
 void Improvement::keep(Rung rung)
 {
-    rung.diagnosis.problems = take_.report().problems;
+    rung.diagnosis.problems = ladder_.problems;
     ladder_.rungs.push_back(std::move(rung));
     concludeFromLast();
 }

@@ -14,7 +14,8 @@ namespace excursion {
 struct ImproveOptions {
     DiagnoseOptions diagnose;
     std::vector<std::string> with;  ///< effects that the first model already has
-    /// improve() calls it with each rung once its diagnosis is known; may be empty
+    /// improve() calls it with each rung once its diagnosis is known, and again from the first one on where the ladder
+    /// begins again (Improvement::beginUncoupled()); may be empty
     std::function<void(const Rung&)> finished;
 };
 
@@ -57,6 +58,7 @@ public:
 private:
     using Data = std::variant<Record, Spectra>;
 
+    void beginBehind(double coupling, const Progress&);
     std::vector<Rung> rungsTogether(const Spectra&, const Progress&) const;
     std::vector<Rung> rungsTogether(Record&, const Progress&) const;
     Rung judged(Rung, const Data&, const Progress&) const;

@@ -44,7 +44,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (onlyNoise()) {
         LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-4};
         const bool straight = !canCorrect(model, record, sections);
-        if (straight)  // such steps come less far, and end in a bend unless they are bold
+        if (straight)  // uncorrected steps stop in a bend of the valley unless the damping starts low
             alongTheFloor.firstDamping = 1e-7;
         if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
             constexpr double noise = 0.5;  // of the cost, half the sum of squares

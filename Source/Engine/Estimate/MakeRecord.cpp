@@ -327,7 +327,7 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
 void equalize(Record& record, double corner)
 {
     const auto pressure = record.channelIndex(Quantity::pressure);
-    if (!pressure || !(corner > 0.0))
+    if (!pressure || !(corner > 0.0) || !hasPeriods(record))
         return;
     for (auto& section : record.sections)
         for (std::size_t k = 1; k < section.measured[*pressure].size(); ++k) {
