@@ -7,28 +7,45 @@
 
 namespace excursion {
 
+namespace {
+
+std::complex<double> inverseAt(const Record& record, const Section& section, std::size_t line, double corner)
+{
+    return {1.0, -corner / record.frequency(section, line)};
+}
+
+}  // namespace
+
+void takeOffHighPass(Record& record, std::size_t channel, double corner)
+{
+    if (corner == 0.0 || !hasPeriods(record))
+        return;
+    for (auto& section : record.sections) {
+        auto& measured = section.measured[channel];
+        for (std::size_t k = 1; k < measured.size(); ++k) {
+            const auto inverse = inverseAt(record, section, k, corner);
+            measured[k] *= inverse;
+            for (auto* deviation : {&section.deviation, &section.silentDeviation})
+                if (!deviation->empty())
+                    (*deviation)[channel][k] *= std::abs(inverse);
+        }
+    }
+}
+
 void uncouple(Record& record, double corner)
 {
     if (corner == 0.0 || !hasPeriods(record))
         return;
     for (auto& section : record.sections) {
-        const auto inverse = [&](std::size_t k) {
-            return std::complex<double>(1.0, -corner / record.frequency(section, k));
-        };
         auto input = fft(section.input);
         for (std::size_t k = 1; k < input.size(); ++k)
-            input[k] *= inverse(k);
+            input[k] *= inverseAt(record, section, k, corner);
         section.input = inverseFft(input, section.window);
         for (std::size_t k = 1; k < section.inputVariance.size(); ++k)
-            section.inputVariance[k] *= std::norm(inverse(k));
-        for (auto& channel : section.measured)
-            for (std::size_t k = 1; k < channel.size(); ++k)
-                channel[k] *= inverse(k);
-        for (auto* deviations : {&section.deviation, &section.silentDeviation})
-            for (auto& deviation : *deviations)
-                for (std::size_t k = 1; k < deviation.size(); ++k)
-                    deviation[k] *= std::abs(inverse(k));
+            section.inputVariance[k] *= std::norm(inverseAt(record, section, k, corner));
     }
+    for (std::size_t c = 0; c < record.channels.size(); ++c)
+        takeOffHighPass(record, c, corner);
 }
 
 }  // namespace excursion

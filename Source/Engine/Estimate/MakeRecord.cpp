@@ -323,22 +323,6 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
     record.leadIn = lead;
 }
 
-/// Takes a microphone's high-pass off the pressure.
-void equalize(Record& record, double corner)
-{
-    const auto pressure = record.channelIndex(Quantity::pressure);
-    if (!pressure || !(corner > 0.0) || !hasPeriods(record))
-        return;
-    for (auto& section : record.sections)
-        for (std::size_t k = 1; k < section.measured[*pressure].size(); ++k) {
-            const std::complex<double> inverse(1.0, -corner / record.frequency(section, k));
-            section.measured[*pressure][k] *= inverse;
-            for (auto* deviation : {&section.deviation, &section.silentDeviation})
-                if (!deviation->empty())
-                    (*deviation)[*pressure][k] *= std::abs(inverse);
-        }
-}
-
 }  // namespace
 
 bool RecordOptions::isValid(std::string* reason) const
@@ -397,7 +381,8 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
         addAperiodicSections(take, options, record);
     }
     uncouple(record, take.coupling);
-    equalize(record, options.microphoneCorner);
+    if (const auto pressure = record.channelIndex(Quantity::pressure))
+        takeOffHighPass(record, *pressure, options.microphoneCorner);
     if (record.bandLow <= 0.0)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
