@@ -15,14 +15,16 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     if (work.ladder().verdict == Verdict::badMeasurement)
         return work.ladder();
     std::size_t told = 0;
+    double behind = 0.0;  // the coupling of the rungs that were told
     const auto tell = [&] {
+        if (std::exchange(behind, work.coupling()) != work.coupling())
+            told = 0;
         for (; told < work.ladder().rungs.size(); ++told)
             if (options.finished)
                 options.finished(work.ladder().rungs[told]);
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
-    work.beginUncoupled(progress.part(begun, begun));
     const bool inTime = take.inTime() != nullptr;
     const auto verdict = [&] { return work.ladder().verdict; };
     const auto climb = [&] {
@@ -47,15 +49,16 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
         tell();
     };
     climb();
-    if (const auto before = work;
-        verdict() == Verdict::unknownEffect && work.beginUncoupled(progress.part(done, done))) {
-        told = 0;
-        climb();
+    if (verdict() == Verdict::unknownEffect) {
+        const auto before = work;
         const auto leaves = [](const Improvement& one) {
             return one.ladder().rungs.back().comparison.chiSquaredPerValue;
         };
-        if (!(leaves(work) < leaves(before)))
-            work = before;
+        if (work.beginUncoupled(progress.part(done, done))) {
+            climb();
+            if (!(leaves(work) < leaves(before)))
+                work = before;
+        }
     }
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);

@@ -104,7 +104,11 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
     }
 }
 
-void Improvement::begin(const Progress& progress) { beginBehind(0.0, progress); }
+void Improvement::begin(const Progress& progress)
+{
+    beginBehind(0.0, progress.part(0.0, 0.8));
+    beginUncoupled(progress.part(0.8, 1.0));
+}
 
 void Improvement::beginBehind(double coupling, const Progress& progress)
 {
@@ -125,10 +129,12 @@ void Improvement::beginBehind(double coupling, const Progress& progress)
     keep(std::move(rung));
 }
 
+bool Improvement::mayBeCoupled() const { return !(coupling_ > 0.0) && !(take_.measurement().coupling > 0.0); }
+
 bool Improvement::beginUncoupled(const Progress& progress)
 {
     const auto* record = std::get_if<Record>(&data_);
-    if (!record || coupling_ > 0.0 || take_.measurement().coupling > 0.0 || ladder_.rungs.empty())
+    if (!record || !mayBeCoupled() || ladder_.rungs.empty())
         return false;
     const auto& last = ladder_.rungs.back();
     const bool allIsFound = last.diagnosis.verdict == Verdict::unknownEffect;
@@ -148,7 +154,12 @@ bool Improvement::beginUncoupled(const Progress& progress)
 bool Improvement::addTogether(const Progress& progress)
 {
     auto data = data_;
-    auto rungs = std::visit([&](auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data);
+    auto [rungs, coupling] = std::visit([&](auto& d) { return together(d, progress.part(0.0, 0.8)); }, data);
+    if (coupling > 0.0) {
+        beginBehind(coupling, progress.part(0.8, 0.8));
+        addTogether(progress.part(0.8, 1.0));
+        return true;
+    }
     if (rungs.empty())
         return false;
     rungs.back() = judged(std::move(rungs.back()), data, progress.part(0.8, 1.0));
@@ -159,9 +170,7 @@ bool Improvement::addTogether(const Progress& progress)
     return true;
 }
 
-/// The last rung, and those that follow from it together; the last of them is not diagnosed yet. None where nothing is
-/// to be added.
-std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress) const
+Improvement::Together Improvement::together(const Spectra& spectra, const Progress& progress) const
 {
     const auto& options = options_.diagnose;
     const auto steps = stepsByResponse(ladder_.model(), spectra, options.fit.threads, progress.part(0.0, 0.7));
@@ -188,10 +197,10 @@ std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progr
         rung.comparison = compare(rung.model, spectra);
         rungs.push_back(std::move(rung));
     }
-    return rungs;
+    return {std::move(rungs), 0.0};
 }
 
-std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& progress) const
+Improvement::Together Improvement::together(Record& record, const Progress& progress) const
 {
     auto base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
@@ -199,7 +208,9 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
     const bool oneIsKnown = base.diagnosis.verdict == Verdict::missingEffect;
     if (!hasPeriods(record) || base.diagnosis.verdict == Verdict::complete || (backed < 2 && oneIsKnown))
         return {};
-    const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
+    const auto whole = fitWhole(base.model, record, options_.diagnose.fit, mayBeCoupled(), progress.part(0.0, 0.6));
+    if (whole.coupling > 0.0)
+        return {{}, whole.coupling};
     const auto& named = base.diagnosis.ranking;
     // One effect that is known is added by its own trial.
     if (whole.votes.empty()
@@ -216,7 +227,9 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
     if (oneIsKnown)  // the noise may be another one now
         if (const auto byItsTrial = tryCompare(named.front().model, record, {0, false}))
             reached = std::min(reached, byItsTrial->chiSquaredPerValue);
-    return rungs.back().comparison.chiSquaredPerValue < reached ? rungs : std::vector<Rung> {};
+    if (!(rungs.back().comparison.chiSquaredPerValue < reached))
+        return {};
+    return {std::move(rungs), 0.0};
 }
 
 void Improvement::add(const std::string& id, const Progress& progress)

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/Whole.h"
 
 #include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/FindCoupling.h"
 #include "Engine/Diagnosis/Grow.h"
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/Refine.h"
@@ -75,11 +76,19 @@ Candidate refined(Whole whole, const Record& record, WholeSearch& search, const 
 /// and the other one only tried where that does not come near the noise; but where growth ends far from the noise,
 /// another start may lead further than any refinement.
 Candidate best(const Model& base, const Record& record, WholeSearch& search, const FitOptions& options,
-               const Progress& progress)
+               bool mayBeCoupled, const Progress& progress)
 {
     constexpr double far = 100.0;
     const auto begun = grown(base, record, search, {}, progress.part(0.0, 0.4));
     auto first = wholeOf(*begun);  // nobody has been anywhere before
+    if (mayBeCoupled && !isNear(first, record)) {
+        // The catalogue has said what it can of the record as it is.
+        const double corner = findCoupling(first.model, record, options, true, progress.part(0.4, 0.4));
+        if (corner > 0.0) {
+            first.coupling = corner;
+            return {std::move(first), {}};
+        }
+    }
     std::optional<Whole> second;
     auto growSecond = [&, done = false]() mutable {
         const auto loud = done ? std::nullopt : fittedToLoudest(base, record, options);
@@ -158,11 +167,12 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
 
 }  // namespace
 
-Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, bool mayBeCoupled,
+               const Progress& progress)
 {
     WholeSearch search(base, record, options);
-    auto found = best(base, record, search, options, progress.part(0.0, 0.7));
-    if (!found.whole.fit.usable())
+    auto found = best(base, record, search, options, mayBeCoupled, progress.part(0.0, 0.7));
+    if (found.whole.coupling > 0.0 || !found.whole.fit.usable())
         return found.whole;
     if (!followsDrift(found.whole.model, record))
         return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));

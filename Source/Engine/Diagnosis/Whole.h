@@ -12,6 +12,8 @@ namespace excursion {
 
 /// All effects of the catalogue that a take shows, found together.
 struct Whole {
+    double coupling =
+        0.0;         ///< Hz, of the recorder's inputs (FindCoupling.h): the record lacks it, and nothing else is told
     Model model;     ///< the base and the needed effects, refined
     FitSummary fit;  ///< not usable if nothing was found
     /// the noise is that of the silent lines (useSilentNoise()): the model follows what the periods drift
@@ -29,7 +31,8 @@ struct Whole {
 /// the rounds end far from the noise. If something is left that no effect explains, only effects that stand alone stay.
 /// A whole that follows what the periods drift (followsDrift()) is completed against the noise
 /// without it.
-/// @param base  fitted; its effects stay
-Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
+/// @param base          fitted; its effects stay
+/// @param mayBeCoupled  a coupling of the recorder's inputs is looked for where the rounds end far from the noise
+Whole fitWhole(const Model& base, const Record&, const FitOptions&, bool mayBeCoupled, const Progress& = {});
 
 }  // namespace excursion
