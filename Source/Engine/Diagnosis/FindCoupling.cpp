@@ -5,44 +5,61 @@
 #include "Engine/Diagnosis/Sums.h"
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Estimate/Coupling.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace excursion {
 namespace {
 
-/// What a model leaves behind a coupling, fitted quickly.
+/// What a model leaves behind a coupling.
 class Coupled {
 public:
     Coupled(const Model& model, const Record& record, const FitOptions& options)
-        : model_(model), record_(record), sections_(estimationSections(record)), options_(options)
+        : record_(record), sections_(trialSections(record, 2)), options_(options)
     {
         ScoreOptions score;
         score.threads = options.threads;
         chooseResiduals(options_, score, model, record, sections_);
         options_.search = {4, 1e-3};
+        run_.substeps = score.substeps;
+        run_.played = score.played;
+        run_.threads = options.threads;
     }
 
-    FitSummary at(double corner, const Progress& progress) const
+    /// The cost after one step of all that is free; infinite where the model runs away.
+    double afterAStep(const Model& model, double corner, const Progress& progress) const
     {
-        auto record = record_;
-        uncouple(record, corner);
-        auto model = model_;
-        return quickFit(model, record, sections_, options_, progress);
+        const auto active = freeParameters(model);
+        auto sum = sumOf(quickError(model, behind(corner), sections_, active, run_, progress));
+        if (!sum)
+            return std::numeric_limits<double>::infinity();
+        addPrior(model, active, *sum);
+        std::vector<Eigen::Index> all(active.size());
+        std::iota(all.begin(), all.end(), Eigen::Index {0});
+        return predictedCost(*sum, gaussNewtonStep(*sum, all));
     }
-    double costAt(double corner, const Progress& progress) const
+    FitSummary fit(Model& model, double corner, const Progress& progress) const
     {
-        const auto summary = at(corner, progress);
-        return summary.usable() ? summary.finalCost : std::numeric_limits<double>::infinity();
+        return quickFit(model, behind(corner), sections_, options_, progress);
     }
 
 private:
-    const Model& model_;
+    Record behind(double corner) const
+    {
+        auto record = record_;
+        uncouple(record, corner);
+        return record;
+    }
+
     const Record& record_;
     std::vector<std::size_t> sections_;
     FitOptions options_;
+    OutputErrorOptions run_;
 };
 
 }  // namespace
@@ -53,38 +70,47 @@ double findCoupling(const Model& model, const Record& record, const FitOptions& 
     if (!hasPeriods(record) || !record.noiseKnown || !hasLaws(model))
         return 0.0;
     const Coupled coupled(model, record, options);
-    const auto before = coupled.at(0.0, progress.part(0.0, 0.0));
-    if (!before.usable())
-        return 0.0;
     constexpr double first = 0.03, worthwhile = 0.05, settled = 0.02, highest = 2.0;
     constexpr int rounds = 4;
-    double corner = 0.0, cost = before.finalCost, reach = first * record.bandLow;
+    Model now = model;
+    FitSummary before, after;
+    double corner = 0.0, reach = first * record.bandLow;
     for (int n = 0; n < rounds; ++n) {
         progress.at(static_cast<double>(n) / rounds, "looking for the recorder's coupling");
         const auto part = progress.part(static_cast<double>(n) / rounds, static_cast<double>(n) / rounds);
-        const double below = coupled.costAt(corner - reach, part), above = coupled.costAt(corner + reach, part);
-        const double bend = below - 2.0 * cost + above;
+        const double here = coupled.afterAStep(now, corner, part);
+        const double below = coupled.afterAStep(now, corner - reach, part);
+        const double above = coupled.afterAStep(now, corner + reach, part);
+        const double bend = below - 2.0 * here + above;
         if (!(bend > 0.0) || !std::isfinite(bend))
             break;
         const double step = 0.5 * reach * (below - above) / bend, promised = 0.5 * bend * std::pow(step / reach, 2);
-        if (n == 0 && (step <= 0.0 || promised < worthwhile * cost))
-            return 0.0;
+        if (n == 0) {
+            if (step <= 0.0 || promised < worthwhile * here)
+                return 0.0;
+            before = after = coupled.fit(now, corner, part);
+            if (!before.usable())
+                return 0.0;
+        }
         const double next = std::clamp(corner + step, 0.0, highest * record.bandLow);
-        const double there = coupled.costAt(next, part);
-        if (!(there < cost))
+        Model there = now;
+        const auto fitted = coupled.fit(there, next, part);
+        if (!fitted.usable() || !(fitted.finalCost < after.finalCost))
             break;
         const bool arrived = std::abs(next - corner) < settled * next;
+        now = std::move(there);
+        after = fitted;
         corner = next;
-        cost = there;
         if (arrived)
             break;
         reach = std::max(0.1 * corner, 0.3 * reach);
     }
-    const auto after = coupled.at(corner, progress.part(1.0, 1.0));
+    if (!(corner > 0.0))
+        return 0.0;
     const double fall = after.chiSquaredPerValue / before.chiSquaredPerValue;
     constexpr double halved = 0.5, clearly = 0.8;
     const bool toTheNoise = after.chiSquaredPerValue < atNoise && after.onlyNoise && fall < clearly;
-    return corner > 0.0 && (toTheNoise || (allElseIsFound && fall < halved)) ? corner : 0.0;
+    return toTheNoise || (allElseIsFound && fall < halved) ? corner : 0.0;
 }
 
 }  // namespace excursion

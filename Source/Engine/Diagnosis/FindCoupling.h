@@ -6,7 +6,8 @@
 namespace excursion {
 
 /// The corner (Hz) of the recorder's coupling (Coupling.h) with which a model with laws leaves the least. The coupling
-/// turns phases by corner/f, so the cost is a parabola near its least value, which three quick fits tell:
+/// turns phases by corner/f, so the cost is a parabola near its least value. Three costs tell it, J(h) after one
+/// Gauss-Newton step of all that is free:
 ///     corner <- corner + h/2 (J(-h) - J(h))/(J(-h) - 2 J(0) + J(h)).
 /// It is only believed where it is what was missing: the error falls clearly, and to the noise; or, when no effect of
 /// the catalogue is missing any more, its power falls to less than half.

@@ -81,6 +81,20 @@ Spectrum between(const Eigen::VectorXcd& known, const std::vector<std::size_t>& 
     return all;
 }
 
+/// Whether steps along slopes that were taken elsewhere lead as well as along new ones.
+bool stillLead(const Component& law, const LawSlopes& slopes)
+{
+    constexpr double hardly = 0.03;
+    const auto here = valuesOf(law);
+    for (std::size_t k = 0; k < here.size(); ++k) {
+        const auto& p = law.parameters[k];
+        const double unit = std::isfinite(p.prior) ? p.prior : law.operatingRange.scale;
+        if (!(std::abs(here[k] - slopes.at[k]) <= hardly * unit))
+            return hasConstantSlopes(law);
+    }
+    return true;
+}
+
 }  // namespace
 
 Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last,
@@ -139,12 +153,12 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
         if (!isLaw(law))
             continue;
         const auto start = law.effect->slow() ? histories[k][place] : startOf(law, section, motion, record.sampleRate);
-        const bool isKnown = known && (*known)[k];
+        const bool isKnown = known && (*known)[k] && stillLead(law, *(*known)[k]);
         auto drive = driveOf(law, motion, start, record.sampleRate,
                              wanted.empty() || isKnown ? std::vector<bool> {} : wanted[k], lines);
         if (isKnown)
             drive.slopes = (*known)[k];
-        else if (known && drive.slopes && hasConstantSlopes(law))
+        else if (known && drive.slopes)
             (*known)[k] = drive.slopes;
         for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
             if (model.electrical())

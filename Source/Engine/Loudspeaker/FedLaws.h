@@ -43,14 +43,16 @@ using LawHistories = std::vector<std::vector<MemoryStart>>;
 LawHistories lawHistories(const Model&, const Record&, const std::vector<std::size_t>& sections,
                           const std::vector<ShownMotion>&, bool withGradient);
 
-/// By component, the slopes of laws on one section that depend on its motion alone; none where not known.
+/// By component, the slopes of laws on one section; none where not known.
 using KnownSlopes = std::vector<std::shared_ptr<const LawSlopes>>;
 
 /// The laws of a model, fed with the motion of a section. A memory that is not slow is settled there.
 /// @param place   place of the section among those of `histories`
 /// @param wanted  by component, parameters to differentiate by; empty: none
-/// @param known   if given, slopes that are known are not computed again, and those that will stay are added. Of this
-///                motion and these parameters to differentiate by
+/// @param known   if given, slopes that are known are not computed again while they lead as well as new ones: those
+/// that
+///                depend on the motion alone, and others while their law has hardly moved. New ones are kept there. Of
+///                this motion, or nearly this one, and these parameters to differentiate by
 Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawHistories&, std::size_t place,
          const std::vector<std::vector<bool>>& wanted, KnownSlopes* known = nullptr);
 

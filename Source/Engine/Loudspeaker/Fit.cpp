@@ -240,9 +240,12 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         constexpr double settled = 0.95;
         double before = std::numeric_limits<double>::infinity();
         for (int n = 0; n < rounds; ++n) {
-            if (n > 0)
-                motions = shownMotions(model, record, sections, motions, options.threads);
-            known.assign(sections.size(), {});
+            if (n > 0) {
+                auto next = shownMotions(model, record, sections, motions, options.threads);
+                if (!isNear(next, motions))
+                    known.assign(sections.size(), {});
+                motions = std::move(next);
+            }
             const auto round = search(model, record, sections, errorOf, options, progress);
             if (n > 0 && !round.usable())
                 break;

@@ -63,15 +63,23 @@ private:
     MotionView view_;
 };
 
+/// How a law is asked along a motion.
+struct Grid {
+    std::size_t apart = fine;  ///< values of the motion from answer to answer
+    double rate = 0.0;         ///< Hz, of the answers
+    std::size_t leadIn = 0;    ///< values of the motion before the window, up to a period
+    Pace pace;                 ///< of the memory, at this rate
+};
+
 /// follow() of a memory that is steady.
 template <class T, class See>
-void followSteady(const Along<T>& law, std::vector<T> start, std::size_t length, std::size_t leadIn, double sampleRate,
-                  const See& see)
+void followSteady(const Along<T>& law, std::vector<T> start, std::size_t length, const Grid& grid, const See& see)
 {
+    const auto [apart, stepRate, leadIn, pace] = grid;
     SteadyMemory on([&](double place, const T* memory, T* rate) { law.ask(place, memory, rate); }, std::move(start),
-                    length - leadIn, fine, sampleRate);
+                    length - leadIn, apart, stepRate);
     std::vector<T> rate(on.memory.size());
-    for (std::size_t step = 0; step < leadIn + length; step += fine) {
+    for (std::size_t step = 0; step < leadIn + length; step += apart) {
         const std::size_t n = (length - leadIn + step) % length;
         if (step >= leadIn) {
             const auto sum = law.ask(static_cast<double>(n), on.memory.data(), rate.data());
@@ -81,20 +89,19 @@ void followSteady(const Along<T>& law, std::vector<T> start, std::size_t length,
     }
 }
 
-/// Follows a law's memory from the lead-in before the window to its end, and shows what it meets there once a sample:
-/// see(fine value, sum, memory, its rate).
-/// @param leadIn  fine values, up to a period
+/// Follows a law's memory from the lead-in before the window to its end, and shows what it meets there at each answer:
+/// see(value of the motion, sum, memory, its rate).
 template <class T, class See>
-void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, std::size_t leadIn, int steps,
-            double sampleRate, const See& see)
+void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, const Grid& grid, const See& see)
 {
     RungeKutta<T> method(memory.size());
     std::vector<T> rate(memory.size());
-    const double h = 1.0 / (steps * sampleRate), across = static_cast<double>(fine) / steps;
-    for (std::size_t step = 0; step < leadIn + length; step += fine) {
-        const std::size_t n = (length - leadIn + step) % length;
+    const int steps = grid.pace.steps;
+    const double h = 1.0 / (steps * grid.rate), across = static_cast<double>(grid.apart) / steps;
+    for (std::size_t step = 0; step < grid.leadIn + length; step += grid.apart) {
+        const std::size_t n = (length - grid.leadIn + step) % length;
         const auto sum = law.ask(static_cast<double>(n), memory.data(), rate.data());
-        if (step >= leadIn)
+        if (step >= grid.leadIn)
             see(n, sum, memory, rate);
         for (int part = 0; part < steps; ++part) {
             const double begin = static_cast<double>(n) + across * part;
@@ -109,13 +116,13 @@ void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, std:
 
 template <class T>
 Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion,
-               const std::vector<T>& start, std::size_t leadIn, const Pace& pace, double sampleRate)
+               const std::vector<T>& start, const Grid& grid)
 {
     const Along<T> along(law, parameters, motion);
     const std::size_t length = motion.i.size();
     Answers<T> answers;
-    answers.voltage.reserve(length / fine);
-    answers.force.reserve(length / fine);
+    answers.voltage.reserve(length / grid.apart);
+    answers.force.reserve(length / grid.apart);
     if (!start.empty()) {
         const auto see = [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory,
                              const std::vector<T>& rate) {
@@ -123,13 +130,13 @@ Answers<T> ask(const Component& law, const std::vector<T>& parameters, const Sho
                 answers.memory = memory;
             along.answer(n, sum, memory.data(), rate.data(), answers);
         };
-        if (pace.steady)
-            followSteady(along, start, length, leadIn, sampleRate, see);
+        if (grid.pace.steady)
+            followSteady(along, start, length, grid, see);
         else
-            follow(along, start, length, leadIn, pace.steps, sampleRate, see);
+            follow(along, start, length, grid, see);
         return answers;
     }
-    for (std::size_t n = 0; n < length; n += fine)
+    for (std::size_t n = 0; n < length; n += grid.apart)
         along.answer(n, along.ask(static_cast<double>(n), nullptr, nullptr), nullptr, nullptr, answers);
     return answers;
 }
@@ -143,14 +150,30 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
 }
 
 /// The first lines of a spectrum; none of what is zero.
-Spectrum firstLines(const std::vector<double>& samples, std::size_t lines)
+/// @param thinned  of so many samples one is there
+Spectrum firstLines(const std::vector<double>& samples, std::size_t lines, std::size_t thinned)
 {
     if (std::all_of(samples.begin(), samples.end(), [](double sample) { return sample == 0.0; }))
         return {};
     auto spectrum = fft(samples);
     spectrum.resize(std::min(lines, spectrum.size()));
+    for (auto& line : spectrum)
+        line *= static_cast<double>(thinned);
     spectrum.shrink_to_fit();
     return spectrum;
+}
+
+/// Of how many samples one is enough for slopes. A step needs no more than their leading digits: what lies above twice
+/// the compared lines may fold into them.
+std::size_t thinnedFor(const Component& law, std::size_t samples, std::size_t lines)
+{
+    constexpr std::size_t most = 8;
+    if (law.effect->emits())  // its lateness is asked for at every sample
+        return 1;
+    std::size_t factor = 1;
+    while (factor < most && samples % (2 * factor) == 0 && samples / (2 * factor) >= 3 * lines)
+        factor *= 2;
+    return factor;
 }
 
 /// The derivatives of what a law without memory adds to the two equations, by its parameters, somewhere in its range.
@@ -205,23 +228,33 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
-    const auto pace = paceOf(law, viewOf(motion), fine, sampleRate);
-    const std::size_t length = motion.i.size(), quarter = length / fine / 4 * fine;
+    const std::size_t length = motion.i.size();
+    const auto gridOf = [&](std::size_t thinned) {
+        Grid grid {fine * thinned, sampleRate / static_cast<double>(thinned), 0, {}};
+        grid.leadIn = length / grid.apart / 4 * grid.apart;
+        grid.pace = paceOf(law, viewOf(motion), grid.apart, grid.rate);
+        return grid;
+    };
     LawDrive drive;
-    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter, pace,
-                                   sampleRate);
+    const auto grid = gridOf(1);
+    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, grid);
     drive.voltage = fft(plain.voltage);
     drive.force = fft(plain.force);
     drive.lateness = plain.lateness;
     if (std::none_of(wanted.begin(), wanted.end(), [](bool w) { return w; }))
         return drive;
     auto slopes = std::make_shared<LawSlopes>();
+    slopes->at = valuesOf(law);
     slopes->voltage.resize(count);
     slopes->force.resize(count);
     slopes->lateness.resize(count);
     // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
     // more of that than a quarter.
-    const bool whole = !pace.quarterForgets && !law.effect->slow();
+    const bool whole = !grid.pace.quarterForgets && !law.effect->slow();
+    const auto thinned = thinnedFor(law, length / fine, lines);
+    auto coarse = thinned > 1 ? gridOf(thinned) : grid;
+    if (whole)
+        coarse.leadIn = length;
     std::vector<std::size_t> own;  // of a chunk
     const auto differentiate = [&] {
         auto parameters = valuesOf<Jet>(law);
@@ -234,11 +267,11 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
             for (std::size_t m = 0; m < size && !whole; ++m)
                 memory[m].v[slot] = start.gradient(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(own[j]));
         }
-        const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace, sampleRate);
+        const auto jets = ask<Jet>(law, parameters, motion, memory, coarse);
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
-            slopes->voltage[own[j]] = firstLines(series(jets.voltage, slope), lines);
-            slopes->force[own[j]] = firstLines(series(jets.force, slope), lines);
+            slopes->voltage[own[j]] = firstLines(series(jets.voltage, slope), lines, thinned);
+            slopes->force[own[j]] = firstLines(series(jets.force, slope), lines, thinned);
             slopes->lateness[own[j]] = series(jets.lateness, slope);
         }
         own.clear();

@@ -15,7 +15,8 @@ Pace paceOf(const Component& law, const MotionView& motion, std::size_t perSampl
     std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0), first;
     double fastest = 0.0, asked = 0.0;
     bool steady = true;
-    const std::size_t apart = 8 * perSample;
+    constexpr std::size_t closest = 8, places = 400;  // enough to meet the fastest rate of a motion nearly
+    const std::size_t apart = std::max(closest, motion.i.size() / (places * perSample)) * perSample;
     constexpr double same = 1e-9;
     for (std::size_t n = 0; n < motion.i.size(); n += apart, asked += 1.0) {
         const auto rates = [&](std::vector<double>& out) {

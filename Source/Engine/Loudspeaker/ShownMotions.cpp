@@ -48,4 +48,19 @@ ShownMotions settledMotions(const Model& model, const Record& record, const std:
     return shownMotions(model, record, sections, shownMotions(model, record, sections, {}, threads), threads);
 }
 
+bool isNear(const ShownMotions& one, const ShownMotions& other)
+{
+    constexpr double share = 0.01;
+    const auto near = [](const std::vector<double>& a, const std::vector<double>& b) {
+        double apart = 0.0, size = 0.0;
+        for (std::size_t n = 0; n < a.size(); ++n) {
+            apart += (a[n] - b[n]) * (a[n] - b[n]);
+            size += a[n] * a[n];
+        }
+        return apart <= share * share * size;
+    };
+    return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                      [&](const ShownMotion& a, const ShownMotion& b) { return near(a.i, b.i) && near(a.x, b.x); });
+}
+
 }  // namespace excursion
