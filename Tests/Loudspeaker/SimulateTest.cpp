@@ -282,6 +282,11 @@ TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
     model.components.back().parameters[1].value = -3.0 * model.baseParameter("K").value;
     const auto u = burst(12000.0, 0.05, 40.0);
     CHECK_THROWS_AS(simulate(model, u, 12000.0, {}), Error);
+    SimulationOptions options;
+    options.maximumSubsteps = 16;
+    const auto chosen = chooseSubsteps(model, u, 12000.0, options);
+    CHECK_FALSE(chosen.converged);
+    CHECK(chosen.substeps == 1);  // shorter steps help no law
 }
 
 TEST_CASE("Pressure is the acceleration times rho Sd / (2 pi d), later by tau", "[simulate]")

@@ -4,8 +4,12 @@
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Document/JsonText.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Laws.h"
+#include "Engine/Take/TakeFile.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -117,6 +121,21 @@ double shownBy(const bench::Loudspeaker& lesser, const bench::Draw& drawn,
     return most;
 }
 
+/// The take, and what it hides.
+void keep(const Outcome& outcome, const Measurement& take)
+{
+    const auto folder = outcome.what.keep / std::to_string(outcome.what.seed);
+    std::filesystem::create_directories(folder);
+    writeMeasurement(take, folder / "take");
+    writeJson({{"hidden", outcome.what.hidden},
+               {"strengths", outcome.strengths},
+               {"showDb", outcome.showDb},
+               {"driver", outcome.driver},
+               {"noiseDb", outcome.noiseDb},
+               {"oddity", outcome.what.oddity}},
+              folder / "truth.json");
+}
+
 void improveAndJudge(Outcome& outcome)
 {
     bench::DrawOptions options;
@@ -132,7 +151,7 @@ void improveAndJudge(Outcome& outcome)
     outcome.noiseDb = drawn.setup.noiseDb;
     for (const auto& hidden : drawn.hidden)
         outcome.strengths.push_back(hidden.strength);
-    if (outcome.whole()) {
+    if (!outcome.control()) {
         const auto whole = played(drawn.speaker, drawn.setup);
         for (const auto& id : outcome.what.hidden) {
             auto fewer = options;
@@ -146,6 +165,11 @@ void improveAndJudge(Outcome& outcome)
         outcome.oddityDb = shownBy(sane, drawn, played(drawn.speaker, drawn.setup));
     }
     const auto take = bench::measure(drawn.speaker, drawn.setup);
+    for (const auto& channel : take.channels)
+        if (channel.quantity != Quantity::voltage)
+            outcome.channels.emplace_back(name(channel.quantity));
+    if (!outcome.what.keep.empty())
+        keep(outcome, take);
     outcome.takeSeconds = static_cast<double>(take.length()) / take.sampleRate;
 
     ImproveOptions improvement;

@@ -4,6 +4,7 @@
 #include "Engine/Take/Measurement.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Case {
     unsigned threads = 1;                              ///< of the fits
     std::optional<std::vector<Quantity>> channels {};  ///< absent: drawn
     std::string oddity {};                             ///< what no effect describes, bench::oddityNames(); empty: none
+    /// where seed/take and seed/truth.json are written for other programs to try themselves on; empty: nowhere
+    std::filesystem::path keep {};
 };
 
 /// Of one law of the final model: how much of the truth lies within its 95 % band, over 90 % of the visited range.
@@ -30,12 +33,12 @@ struct LawCoverage {
 struct Outcome {
     Case what;
     std::string driver;
+    std::vector<std::string> channels;  ///< of the take, beside the voltage
     double sampleRate = 0.0, noiseDb = 0.0, takeSeconds = 0.0, improveSeconds = 0.0;
     std::vector<double> strengths;  ///< of the hidden effects
-    /// of several: what each changes in the channel that shows it best, over the noise
-    std::vector<double> showDb;
-    double oddityDb = 0.0;       ///< the same of the oddity
-    std::string verdict, first;  ///< first of the ranking of the base's diagnosis
+    std::vector<double> showDb;     ///< what each changes in the channel that shows it best, over the noise
+    double oddityDb = 0.0;          ///< the same of the oddity
+    std::string verdict, first;     ///< first of the ranking of the base's diagnosis
     std::vector<std::string> added, withdrawn;
     std::vector<double> confidence;  ///< in each that was added, 0..1
     double standsDb = 0.0;           ///< validation error of the base over the noise floor, in the worst channel

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often is the diagnosis right? Random loudspeakers with one hidden effect or several, and controls with none, are
 // measured on the virtual bench, improved, and compared with the truth.
+#include "Study/CalibrationPlot.h"
+#include "Study/OutcomeFile.h"
 #include "Study/Summary.h"
 
 #include "Bench/Draw.h"
 #include "Bench/Random.h"
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
+#include "Report/Draw.h"
 
 #include <CLI/CLI.hpp>
 
@@ -66,7 +71,8 @@ int main(int argc, char** argv)
     Case first;
     std::vector<std::string> channels, oddities;
     Several several;
-    std::string json, demand;
+    std::vector<std::filesystem::path> earlier;
+    std::string json, calibration, demand;
     std::vector<std::string> hide = bench::drawnEffects();
     CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect or several (and controls with "
                   "none), improves each, and "
@@ -96,7 +102,10 @@ int main(int argc, char** argv)
     app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
+    app.add_option("--keep", first.keep, "folder for the takes and what they hide, for other programs to try");
     app.add_option("--json", json, "file for all results, kept up to date while the study runs");
+    app.add_option("--with", earlier, "files of earlier studies, whose takes count, too")->delimiter(',');
+    app.add_option("--calibration", calibration, "SVG file that shows what confidence means");
     app.add_option(
            "--demand", demand,
            "exit with 1 unless the shares reach their targets: of the diagnosis, or all, the bands of the laws too")
@@ -110,8 +119,16 @@ int main(int argc, char** argv)
         for (const auto& channel : channels)
             first.channels->push_back(quantityNamed(channel).value());
     }
-    const auto plan = cases(hide, several, takes, controls, first, oddities);
     std::vector<Outcome> outcomes;
+    try {
+        for (const auto& file : earlier)
+            for (auto& outcome : readOutcomes(file))
+                outcomes.push_back(std::move(outcome));
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    const auto plan = cases(hide, several, takes, controls, first, oddities);
     std::mutex mutex;
     std::size_t next = 0;
     const auto work = [&] {
@@ -142,6 +159,8 @@ int main(int argc, char** argv)
     }
     const auto summary = summarize(outcomes);
     std::printf("%s", text(summary, outcomes).c_str());
+    if (!calibration.empty())
+        publish(calibration, svgDocument(calibrationPlot(summary.calibration)));
     const bool reached = demand == "all" ? summary.reached() : demand.empty() || summary.diagnosed();
     return reached ? 0 : 1;
 }

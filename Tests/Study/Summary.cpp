@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Study/Summary.h"
 
-#include "Engine/Document/JsonText.h"
+#include "Study/OutcomeFile.h"
+#include "Study/Tables.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -181,6 +184,7 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
                                     100.0 * bin.confidence / bin.of, 100.0 * bin.right / bin.of);
     }
     result += formatted("  median time of improve over the take's length: %.2f\n", s.medianTimeRatio);
+    result += text(tabulate(outcomes));
     bool any = false;
     for (const auto& o : outcomes)
         if (!o.explained() || (!o.odd() && o.finalDb > nearNoiseDb)) {
@@ -218,34 +222,10 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
             calibration["bins"].push_back(
                 {{"confidence", bin.confidence / bin.of}, {"there", share({bin.right, bin.of})}});
     document["medianTimeRatio"] = s.medianTimeRatio;
+    document["tables"] = toJson(tabulate(outcomes));
     document["takes"] = Json::array();
-    for (const auto& o : outcomes) {
-        Json take {{"seed", o.what.seed},
-                   {"hidden", o.what.hidden},
-                   {"driver", o.driver},
-                   {"sampleRate", o.sampleRate},
-                   {"noiseDb", o.noiseDb},
-                   {"strengths", o.strengths},
-                   {"seconds", o.takeSeconds},
-                   {"first", o.first},
-                   {"added", o.added},
-                   {"confidence", o.confidence},
-                   {"withdrawn", o.withdrawn},
-                   {"verdict", o.verdict},
-                   {"standsDb", numberOrNull(o.standsDb)},
-                   {"finalDb", numberOrNull(o.finalDb)},
-                   {"improveSeconds", o.improveSeconds}};
-        if (o.odd())
-            take["oddity"] = {{"kind", o.what.oddity}, {"showDb", o.oddityDb}};
-        if (o.whole())
-            take["showDb"] = o.showDb;
-        for (const auto& law : o.laws)
-            take["laws"].push_back(
-                {{"effect", law.effect}, {"hidden", law.hidden}, {"points", law.points}, {"inside", law.inside}});
-        if (!o.failure.empty())
-            take["failure"] = o.failure;
-        document["takes"].push_back(std::move(take));
-    }
+    for (const auto& o : outcomes)
+        document["takes"].push_back(toJson(o));
     return document;
 }
 

@@ -42,8 +42,22 @@ Pace paceOf(const Component& law, const MotionView& motion, std::size_t perSampl
     }
     constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
     const double quarter = static_cast<double>(motion.i.size()) / (static_cast<double>(perSample) * 4.0 * sampleRate);
-    return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
-            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten, steady};
+    const double slowest = *std::min_element(sum.begin(), sum.end()) / asked;
+    return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)), slowest * quarter > forgotten,
+            steady, slowest};
+}
+
+Pace paceOf(const Component& law, double sampleRate)
+{
+    const auto& e = law.operatingRange;
+    constexpr int length = 256;
+    std::vector<double> i, x, v;
+    for (int n = 0; n < length; ++n) {  // three frequencies that do not belong together
+        i.push_back(e.current * std::sin(0.61 * n));
+        x.push_back(e.displacement * std::sin(0.17 * n));
+        v.push_back(e.velocity * std::sin(0.37 * n));
+    }
+    return paceOf(law, {i, x, v}, 1, sampleRate);
 }
 
 }  // namespace excursion

@@ -28,9 +28,13 @@ struct Pace {
     int steps = 1;  ///< a sample, in which the memory can be followed: its fastest rate times one stays below one
     bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
     bool steady = true;          ///< each state forgets at a rate of its own that nothing changes, dm/dt = a - r m
+    double slowest = 0.0;        ///< 1/s, of these rates, or of their means
 };
 
 /// @param perSample  values of the motion a sample
 Pace paceOf(const Component& law, const MotionView&, std::size_t perSample, double sampleRate);
+
+/// The same along some motion through a law's whole operating range.
+Pace paceOf(const Component& law, double sampleRate);
 
 }  // namespace excursion

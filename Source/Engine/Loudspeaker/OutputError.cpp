@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/OutputError.h"
 
+#include "Engine/Loudspeaker/LawPace.h"
 #include "Engine/Loudspeaker/Sensors.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
@@ -15,8 +16,8 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-/// Whether a law is at work whose memory forgets by the way that the cone goes, and not in time.
-bool remembersWay(const Component& component)
+/// Whether the memory of a law is at work that is to settle in the lead-in: a slow one has its history.
+bool settles(const Component& component)
 {
     const auto& effect = *component.effect;
     return !effect.linear() && !effect.slow() && effect.memorySize(component.operatingRange) > 0
@@ -147,8 +148,15 @@ std::size_t settlingTime(const Model& model, const Record& record)
             if (-pole.real() > slowest)
                 needed = std::max(needed, by60dB / -pole.real());
     const auto period = static_cast<double>(record.sections.front().window);
-    // periods
-    const double least = std::any_of(model.components.begin(), model.components.end(), remembersWay) ? 2.0 : 0.25;
+    double least = 0.25;  // periods
+    for (const auto& component : model.components)
+        if (settles(component)) {
+            const auto pace = paceOf(component, record.sampleRate);
+            if (pace.steady)
+                needed = std::max(needed, by60dB / pace.slowest);
+            else  // it forgets by the way that the cone goes
+                least = 2.0;
+        }
     return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, least * period, 4.0 * period));
 }
 

@@ -61,9 +61,10 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
 
     const auto tolerances = tolerancesOf(model, options);
     SimulationSummary summary;
-    summary.substeps = stableSubsteps(model, sampleRate);
+    const int stable = stableSubsteps(model, sampleRate);
+    summary.substeps = stable;
     Trajectory coarse, fine;
-    bool have = integrate(model, Drive(part, sampleRate, summary.substeps), {}, coarse);
+    bool have = integrate(model, Drive(part, sampleRate, summary.substeps), {}, coarse), ever = have;
     while (summary.substeps <= options.maximumSubsteps) {
         const bool refined = integrate(model, Drive(part, sampleRate, 2 * summary.substeps), {}, fine);
         if (have && refined) {
@@ -80,8 +81,10 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
         summary.substeps *= 2;
         std::swap(coarse, fine);
         have = refined;
+        ever = ever || refined;
     }
-    summary.substeps = std::min(summary.substeps, options.maximumSubsteps);
+    // What runs away at every step does so by a law, and no shorter steps help.
+    summary.substeps = ever ? std::min(summary.substeps, options.maximumSubsteps) : stable;
     return summary;
 }
 

@@ -26,7 +26,8 @@ struct SimulationSummary {
     bool converged = false;  ///< every change is within its tolerance
 };
 
-/// The number of steps per sample that reaches the tolerance on (a part of) this input.
+/// The number of steps per sample that reaches the tolerance on (a part of) this input; the least if the model runs
+/// away at every step.
 SimulationSummary chooseSubsteps(const Model&, std::span<const double> input, double sampleRate,
                                  const SimulationOptions&);
 
