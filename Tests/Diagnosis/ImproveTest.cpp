@@ -178,6 +178,18 @@ TEST_CASE("Random chains of cells are explained at the noise in nineteen of twen
     CHECK(atNoise >= 19);
 }
 
+TEST_CASE("At the noise no effect is missing that explains a little of it", "[improve][bench]")
+{
+    bench::DrawOptions options;  // a coil that warms a micro speaker by a half
+    options.seconds = 5.0;
+    options.channels = {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
+    options.hidden = {{"coil-heating", 0.0}};
+    const auto drawn = bench::draw(99003, options);
+    const auto ladder = improve(bench::measure(drawn.speaker, drawn.setup));
+    CHECK(ladder.verdict == Verdict::complete);
+    CHECK(added(ladder) == std::vector<std::string> {"coil-heating"});
+}
+
 TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
 {
     const auto ladder = improve(seedTake({{"stiffness", 0.3}, {"force-factor", 0.3}}));

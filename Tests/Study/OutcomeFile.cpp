@@ -85,7 +85,8 @@ std::vector<Outcome> readOutcomes(const std::filesystem::path& path)
 {
     std::vector<Outcome> outcomes;
     try {
-        for (const auto& take : readJson(path).at("takes"))
+        const auto document = readJson(path);
+        for (const auto& take : document.at("takes"))
             outcomes.push_back(outcomeFrom(take));
     } catch (const nlohmann::json::exception& error) {
         throw Error(Error::Kind::input, path.string() + " is not a study: " + error.what());

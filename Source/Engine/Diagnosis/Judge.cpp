@@ -18,6 +18,9 @@ bool isNoise(const ChannelComparison& channel)
            && !channel.wanderDb;
 }
 
+/// None is where a take has no periods, nor of a frequency response.
+bool isVoted(const Vote& vote) { return vote.uniqueDb > 0.0 || vote.inconsistency > 0.0; }
+
 }  // namespace
 
 bool isNoise(const Comparison& comparison)
@@ -91,11 +94,14 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
 {
     const Excess excess(comparison);
     const double before = excess(comparison.chiSquaredPerValue);
+    const bool onlyNoise = isNoise(comparison);
+    // Of noise any effect explains a little: there one is missing only if it also explains what no other does.
     if (!ranking.empty() && ranking.front().significant && !outdone(ranking, excess)
+        && !(onlyNoise && isVoted(ranking.front().vote) && !ranking.front().vote.backs())
         && (ranking.front().vote.standsAlone()
             || 1.0 - excess(ranking.front().confirmedChiSquaredPerValue) / before >= smallestShare))
         return Verdict::missingEffect;
-    return isNoise(comparison) ? Verdict::complete : Verdict::unknownEffect;
+    return onlyNoise ? Verdict::complete : Verdict::unknownEffect;
 }
 
 std::string sentenceFor(const Diagnosis& d)
