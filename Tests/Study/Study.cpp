@@ -129,6 +129,9 @@ int main(int argc, char** argv)
         return 1;
     }
     const auto plan = cases(hide, several, takes, controls, first, oddities);
+    std::erase_if(outcomes, [&](const Outcome& o) {  // what runs again counts once
+        return std::any_of(plan.begin(), plan.end(), [&](const Case& c) { return c.seed == o.what.seed; });
+    });
     std::mutex mutex;
     std::size_t next = 0;
     const auto work = [&] {
@@ -158,9 +161,11 @@ int main(int argc, char** argv)
         work();
     }
     const auto summary = summarize(outcomes);
-    std::printf("%s", text(summary, outcomes).c_str());
+    if (!json.empty())
+        writeJson(toJson(summary, outcomes), json);
     if (!calibration.empty())
         publish(calibration, svgDocument(calibrationPlot(summary.calibration)));
+    std::printf("%s", text(summary, outcomes).c_str());
     const bool reached = demand == "all" ? summary.reached() : demand.empty() || summary.diagnosed();
     return reached ? 0 : 1;
 }

@@ -10,8 +10,7 @@
 namespace excursion::study {
 namespace {
 
-/// The interval of such a width that a value lies in, in words that sort as the values do not: the lower end first,
-/// padded.
+/// The interval of such a width that a value lies in, in words.
 std::string interval(double dB, double width)
 {
     const double from = width * std::floor(dB / width);
@@ -52,7 +51,8 @@ Tables tabulate(const std::vector<Outcome>& outcomes)
         std::copy_if(o.added.begin(), o.added.end(), std::back_inserter(wrong),
                      [&](const auto& id) { return !o.isThere(id); });
         bool missed = false;
-        for (std::size_t n = 0; n < o.what.hidden.size(); ++n) {
+        for (std::size_t n = 0; n < std::min(o.what.hidden.size(), o.showDb.size());
+             ++n) {  // none of a take that failed
             if (!o.shows(n))
                 continue;
             const auto& id = o.what.hidden[n];

@@ -64,7 +64,7 @@ private:
 
 }  // namespace
 
-double findCoupling(const Model& model, const Record& record, const FitOptions& options, bool allElseIsFound,
+double findCoupling(const Model& model, const Record& record, const FitOptions& options, double enough,
                     const Progress& progress)
 {
     if (!hasPeriods(record) || !record.noiseKnown || !hasLaws(model))
@@ -108,9 +108,9 @@ double findCoupling(const Model& model, const Record& record, const FitOptions& 
     if (!(corner > 0.0))
         return 0.0;
     const double fall = after.chiSquaredPerValue / before.chiSquaredPerValue;
-    constexpr double halved = 0.5, clearly = 0.8;
+    constexpr double clearly = 0.8;
     const bool toTheNoise = after.chiSquaredPerValue < atNoise && after.onlyNoise && fall < clearly;
-    return toTheNoise || (allElseIsFound && fall < halved) ? corner : 0.0;
+    return toTheNoise || fall < enough ? corner : 0.0;
 }
 
 }  // namespace excursion

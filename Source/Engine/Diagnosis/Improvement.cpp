@@ -106,8 +106,10 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
 
 void Improvement::begin(const Progress& progress)
 {
-    beginBehind(0.0, progress.part(0.0, 0.8));
-    beginUncoupled(progress.part(0.8, 1.0));
+    auto begun = *this;  // what is cancelled changes nothing
+    begun.beginBehind(0.0, progress.part(0.0, 0.8));
+    begun.beginUncoupled(progress.part(0.8, 1.0));
+    *this = std::move(begun);
 }
 
 void Improvement::beginBehind(double coupling, const Progress& progress)
@@ -145,7 +147,9 @@ bool Improvement::beginUncoupled(const Progress& progress)
             behind = &named.model;
     if (!behind || behind->components.empty())
         return false;
-    const double corner = findCoupling(*behind, *record, options_.diagnose.fit, allIsFound, progress.part(0.0, 0.3));
+    constexpr double halved = 0.5;
+    const double corner = findCoupling(*behind, *record, options_.diagnose.fit, allIsFound ? halved : 0.0,
+                                       progress.part(0.0, 0.3));
     if (corner > 0.0)
         beginBehind(corner, progress.part(0.3, 1.0));
     return corner > 0.0;
@@ -156,8 +160,10 @@ bool Improvement::addTogether(const Progress& progress)
     auto data = data_;
     auto [rungs, coupling] = std::visit([&](auto& d) { return together(d, progress.part(0.0, 0.8)); }, data);
     if (coupling > 0.0) {
-        beginBehind(coupling, progress.part(0.8, 0.8));
-        addTogether(progress.part(0.8, 1.0));
+        auto begun = *this;
+        begun.beginBehind(coupling, progress.part(0.8, 0.8));
+        begun.addTogether(progress.part(0.8, 1.0));
+        *this = std::move(begun);
         return true;
     }
     if (rungs.empty())

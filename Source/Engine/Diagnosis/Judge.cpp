@@ -19,7 +19,7 @@ bool isNoise(const ChannelComparison& channel)
 }
 
 /// None is where a take has no periods, nor of a frequency response.
-bool isVoted(const Vote& vote) { return vote.uniqueDb > 0.0 || vote.inconsistency > 0.0; }
+bool isVoted(const Vote& vote) { return vote.uniqueDb != 0.0 || vote.inconsistency != 0.0 || vote.byLevel != 0.0; }
 
 }  // namespace
 

@@ -82,8 +82,9 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
     const auto begun = grown(base, record, search, {}, progress.part(0.0, 0.4));
     auto first = wholeOf(*begun);  // nobody has been anywhere before
     if (mayBeCoupled && !isNear(first, record)) {
-        // The catalogue has said what it can of the record as it is.
-        const double corner = findCoupling(first.model, record, options, true, progress.part(0.4, 0.4));
+        // Another start, or a refinement, may lead further: only what leaves hardly anything of the error is believed.
+        constexpr double hardly = 0.1;
+        const double corner = findCoupling(first.model, record, options, hardly, progress.part(0.4, 0.4));
         if (corner > 0.0) {
             first.coupling = corner;
             return {std::move(first), {}};

@@ -12,8 +12,8 @@ namespace excursion {
 
 /// All effects of the catalogue that a take shows, found together.
 struct Whole {
-    double coupling =
-        0.0;         ///< Hz, of the recorder's inputs (FindCoupling.h): the record lacks it, and nothing else is told
+    /// Hz, of the recorder's inputs (FindCoupling.h): the record is to be freed of it first, and nothing else is told
+    double coupling = 0.0;
     Model model;     ///< the base and the needed effects, refined
     FitSummary fit;  ///< not usable if nothing was found
     /// the noise is that of the silent lines (useSilentNoise()): the model follows what the periods drift
@@ -32,7 +32,8 @@ struct Whole {
 /// A whole that follows what the periods drift (followsDrift()) is completed against the noise
 /// without it.
 /// @param base          fitted; its effects stay
-/// @param mayBeCoupled  a coupling of the recorder's inputs is looked for where the rounds end far from the noise
+/// @param mayBeCoupled  a coupling of the recorder's inputs is looked for where the first rounds do not come near the
+///                      noise
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, bool mayBeCoupled, const Progress& = {});
 
 }  // namespace excursion

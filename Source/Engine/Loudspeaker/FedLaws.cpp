@@ -81,14 +81,26 @@ Spectrum between(const Eigen::VectorXcd& known, const std::vector<std::size_t>& 
     return all;
 }
 
-/// Whether steps along slopes that were taken elsewhere lead as well as along new ones.
-bool stillLead(const Component& law, const LawSlopes& slopes)
+/// Whether steps along slopes that were taken elsewhere lead as well as along new ones. Slopes by shapes are as large
+/// as the law is strong.
+/// @param wanted  parameters to differentiate by
+bool stillLead(const Component& law, const LawSlopes& slopes, const std::vector<bool>& wanted)
 {
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+        if (wanted[k] && !slopes.wanted[k])
+            return false;
     constexpr double hardly = 0.03;
     const auto here = valuesOf(law);
+    double strength = 0.0;
+    for (std::size_t k = 0; k < here.size(); ++k)
+        if (law.parameters[k].strength)
+            strength = std::max(strength, std::abs(slopes.at[k]));
     for (std::size_t k = 0; k < here.size(); ++k) {
         const auto& p = law.parameters[k];
-        const double unit = std::isfinite(p.prior) ? p.prior : law.operatingRange.scale;
+        const double was = std::abs(slopes.at[k]), unit = p.strength ? strength
+                                                          : std::isfinite(p.prior)
+                                                              ? std::min(p.prior, std::max(was, 1.0))
+                                                              : was;
         if (!(std::abs(here[k] - slopes.at[k]) <= hardly * unit))
             return hasConstantSlopes(law);
     }
@@ -153,7 +165,7 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
         if (!isLaw(law))
             continue;
         const auto start = law.effect->slow() ? histories[k][place] : startOf(law, section, motion, record.sampleRate);
-        const bool isKnown = known && (*known)[k] && stillLead(law, *(*known)[k]);
+        const bool isKnown = known && (*known)[k] && !wanted.empty() && stillLead(law, *(*known)[k], wanted[k]);
         auto drive = driveOf(law, motion, start, record.sampleRate,
                              wanted.empty() || isKnown ? std::vector<bool> {} : wanted[k], lines);
         if (isKnown)

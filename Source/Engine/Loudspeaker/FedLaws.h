@@ -49,10 +49,9 @@ using KnownSlopes = std::vector<std::shared_ptr<const LawSlopes>>;
 /// The laws of a model, fed with the motion of a section. A memory that is not slow is settled there.
 /// @param place   place of the section among those of `histories`
 /// @param wanted  by component, parameters to differentiate by; empty: none
-/// @param known   if given, slopes that are known are not computed again while they lead as well as new ones: those
-/// that
-///                depend on the motion alone, and others while their law has hardly moved. New ones are kept there. Of
-///                this motion, or nearly this one, and these parameters to differentiate by
+/// @param known   if given, slopes of this motion, or nearly this one. They are not computed again while they lead as
+///                well as new ones: those that depend on the motion alone, and others while their law has hardly moved.
+///                New ones are kept there
 Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawHistories&, std::size_t place,
          const std::vector<std::vector<bool>>& wanted, KnownSlopes* known = nullptr);
 

@@ -163,17 +163,14 @@ Spectrum firstLines(const std::vector<double>& samples, std::size_t lines, std::
     return spectrum;
 }
 
-/// Of how many samples one is enough for slopes. A step needs no more than their leading digits: what lies above twice
-/// the compared lines may fold into them.
-std::size_t thinnedFor(const Component& law, std::size_t samples, std::size_t lines)
+/// Of how many samples one is enough for slopes. A step, or a vote, needs no more than their leading digits: what lies
+/// above twice the compared lines may fold into them.
+std::size_t thinnedFor(const Component& law, const Pace& pace, std::size_t samples, std::size_t lines)
 {
-    constexpr std::size_t most = 8;
-    if (law.effect->emits())  // its lateness is asked for at every sample
+    constexpr int factor = 2, mostSteps = 16;                             // a sample
+    if (law.effect->emits() || (!pace.steady && pace.steps > mostSteps))  // lateness is asked for at every sample
         return 1;
-    std::size_t factor = 1;
-    while (factor < most && samples % (2 * factor) == 0 && samples / (2 * factor) >= 3 * lines)
-        factor *= 2;
-    return factor;
+    return samples % factor == 0 && samples / factor >= 3 * lines ? factor : 1;
 }
 
 /// The derivatives of what a law without memory adds to the two equations, by its parameters, somewhere in its range.
@@ -245,13 +242,14 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
         return drive;
     auto slopes = std::make_shared<LawSlopes>();
     slopes->at = valuesOf(law);
+    slopes->wanted = wanted;
     slopes->voltage.resize(count);
     slopes->force.resize(count);
     slopes->lateness.resize(count);
     // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
     // more of that than a quarter.
     const bool whole = !grid.pace.quarterForgets && !law.effect->slow();
-    const auto thinned = thinnedFor(law, length / fine, lines);
+    const auto thinned = thinnedFor(law, grid.pace, length / fine, lines);
     auto coarse = thinned > 1 ? gridOf(thinned) : grid;
     if (whole)
         coarse.leadIn = length;

@@ -15,6 +15,7 @@ namespace excursion {
 /// The derivatives of a law's contribution by its own parameters, one entry each. Empty if not asked for or zero.
 struct LawSlopes {
     std::vector<double> at;                ///< the law's parameters where they were taken
+    std::vector<bool> wanted;              ///< of these, those that were differentiated by
     std::vector<Spectrum> voltage, force;  ///< the first lines, as many as asked for
     std::vector<std::vector<double>> lateness;
 };

@@ -37,8 +37,8 @@ struct OutputErrorOptions {
 
 /// The number of samples until the model's periodic response is settled: until the slowest pole of the base has decayed
 /// by 110 dB, and relaxations (creep) by 60 dB if they respond in the band, f > 0.3 of its low edge; loops in the iron,
-/// which begin where a motion nearly the right one has brought them, by 60 dB. At most four
-/// periods. With hysteresis at least two periods, in which the cone goes everywhere twice.
+/// which begin where nearly the right motion has brought them, by 60 dB. At most four periods. With hysteresis at least
+/// two periods, in which the cone goes everywhere twice.
 std::size_t settlingTime(const Model&, const Record&);
 
 /// Simulates the model on the sections and compares (output error). Sections run in parallel; the result does not

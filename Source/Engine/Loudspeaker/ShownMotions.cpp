@@ -60,7 +60,9 @@ bool isNear(const ShownMotions& one, const ShownMotions& other)
         return apart <= share * share * size;
     };
     return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                      [&](const ShownMotion& a, const ShownMotion& b) { return near(a.i, b.i) && near(a.x, b.x); });
+                      [&](const ShownMotion& a, const ShownMotion& b) {
+                          return near(a.i, b.i) && near(a.slope, b.slope) && near(a.x, b.x) && near(a.v, b.v);
+                      });
 }
 
 }  // namespace excursion

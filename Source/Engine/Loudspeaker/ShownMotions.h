@@ -21,7 +21,8 @@ ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::si
 ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections,
                             unsigned threads = 1);
 
-/// Whether one is the other but for a hundredth of the current's and of the displacement's rms, in every section.
+/// Whether one is the other but for a hundredth of the rms, in current, displacement and what they change by, in every
+/// section.
 bool isNear(const ShownMotions&, const ShownMotions&);
 
 }  // namespace excursion
