@@ -24,6 +24,37 @@ TEST_CASE("What a fuller model missed clearly is not tried again", "[diagnosis]"
     CHECK(tried.vote.uniqueDb > hardlyNeeded);
 }
 
+TEST_CASE("Laws whose shapes hold one another back start again from rest", "[diagnosis]")
+{
+    bench::Loudspeaker truth;
+    truth.friction = bench::Friction {{{4000.0, 0.3}, {1500.0, 0.3}, {600.0, 0.3}}};
+    truth.dampingVelocity = bench::Curve {bench::Curve::Shape::rootDrag, 0.0, 0.5, 0.8, 0.0};
+    auto setup = smallSetup();
+    setup.excitation.levels = {0.5, 2.0};
+    auto record = makeRecord(bench::measure(truth, setup));
+    auto base = startModel(record);
+    adapt(record, base);
+    REQUIRE(fit(base, record, estimationSections(record)).usable());
+    WholeSearch search(base, record, {});
+    const auto range = visitedRange(base, record);
+    auto model = withEffect(withEffect(base, effectNamed("damping-velocity"), range), effectNamed("friction"), range);
+    auto& friction = model.components.back();
+    const auto place = [&](std::string_view name, double value) {
+        for (auto& p : friction.parameters)
+            p.value = p.name == name ? value : p.value;
+    };
+    place("Fc", 3.0);
+    place("reach", 1.9 * range.displacement);
+    place("spread", 0.0);
+    search.chooseResiduals(model);
+    auto summary = search.fit(model);
+    const auto before = search.left(model);
+    REQUIRE(summary.usable());
+    CHECK(before.chiSquaredPerValue > 1000.0);  // no small step leads on from there
+    CHECK(search.startAnew(model, summary));
+    CHECK(search.left(model).chiSquaredPerValue < 2.0);
+}
+
 TEST_CASE("Linear effects that only make sense together are found together", "[diagnosis]")
 {
     // Half of the suspension yields, and fast: without the loops of the coil, creep would take all of the damping,

@@ -5,6 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <complex>
+#include <numbers>
+
 using namespace excursion;
 
 namespace {
@@ -39,4 +43,24 @@ TEST_CASE("A stiffness that only the octaves about the resonance show keeps the 
     REQUIRE(chosen.size() == 3);
     for (std::size_t c = 0; c < chosen.size(); ++c)
         CHECK(chosen[c].value == quiet[c].value);
+}
+
+TEST_CASE("The time of flight of a far microphone leaves the response of the sound as it is", "[response]")
+{
+    auto setup = smallSetup();
+    setup.excitation.period = 16384;
+    setup.microphoneDistance = 1.2;  // 3.5 ms: up to 5 kHz the phase turns by half a turn within a band
+    const bench::Loudspeaker truth;
+    const auto record = makeRecord(bench::measure(truth, setup));
+    const auto targets = responsesOf(record, -1, 48);
+    const auto heard = std::find_if(targets.begin(), targets.end(),
+                                    [](const auto& t) { return t.quantity == Quantity::pressure; });
+    REQUIRE(heard != targets.end());
+    const double scale = 1.2 / (2.0 * std::numbers::pi * setup.microphoneDistance) * truth.coneArea;
+    for (std::size_t k = 0; k < heard->frequency.size(); ++k) {
+        const auto pressure = scale * truth.small(heard->frequency[k]).radiated;
+        CAPTURE(heard->frequency[k]);
+        CHECK(std::abs(heard->value[k]) == Approx(std::abs(pressure)).epsilon(0.01));
+        CHECK(heard->deviation[k] < 0.01 * std::abs(pressure));
+    }
 }

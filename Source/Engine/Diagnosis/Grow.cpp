@@ -121,6 +121,9 @@ public:
     /// All at once that a vote backs, and the leader; `again` where the next round is to be without some of them.
     Outcome byVote(const Progress&);
 
+    /// From other starts of the laws that it has, where votes lead no further. Whether that leads on.
+    bool byOtherStarts(const Progress&);
+
     /// One law, where votes lead no further and much is left: each is fitted, and of those that take 3 dB off a channel
     /// the one comes in that leaves least. Whether there is one.
     bool byTrial(const Progress&);
@@ -216,11 +219,27 @@ Growth::Outcome Growth::byVote(const Progress& progress)
     return strange_.empty() || strange_ == before ? Outcome::stuck : Outcome::again;
 }
 
+bool Growth::byOtherStarts(const Progress& progress)
+{
+    lookAgain();  // what was rejected chose the residuals
+    if (!record_.noiseKnown || !search_.beginAt(place(), WholeSearch::Attempt::otherStarts))
+        return false;
+    auto anew = whole_.model;
+    auto summary = whole_.fit;
+    if (!search_.startAnew(anew, summary, progress))
+        return false;
+    strange_ = {};
+    takeIn(std::move(anew), summary);
+    lookAgain();
+    return true;
+}
+
 bool Growth::byTrial(const Progress& progress)
 {
     constexpr double convincing = 3.0;  // dB
     lookAgain();                        // what was rejected chose the residuals
-    if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise || !search_.beginTrialsAt(place()))
+    if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise
+        || !search_.beginAt(place(), WholeSearch::Attempt::laws))
         return false;
     auto laws = possible(asked_.scores, {});
     std::erase_if(laws, [](const Score* s) { return s->effect->linear(); });
@@ -266,7 +285,8 @@ bool grow(Grown& whole, const Model& base, const Record& record, WholeSearch& se
         const auto outcome = growth.byVote(part.part(0.0, 0.8));
         if (outcome == Growth::Outcome::again)
             continue;
-        if (outcome == Growth::Outcome::stuck && !growth.byTrial(part.part(0.8, 1.0)))
+        if (outcome == Growth::Outcome::stuck && !growth.byOtherStarts(part.part(0.8, 0.9))
+            && !growth.byTrial(part.part(0.9, 1.0)))
             break;
         whole.path.push_back(growth.place());
         if (leadsBy(known, whole.path.back()))

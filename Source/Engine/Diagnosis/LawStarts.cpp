@@ -10,20 +10,26 @@
 namespace excursion {
 namespace {
 
+constexpr double worthAStart = 1.0;  // dB
+
+Component atStart(Component component, const std::vector<double>& start)
+{
+    for (std::size_t k = 0; k < start.size(); ++k)
+        component.parameters[k].value = start[k];
+    return component;
+}
+
 /// Adds the model with a law at rest in each of its shapes to start from but the one that it has.
 void addOtherStarts(std::vector<Model>& others, const Model& model, const std::string& law)
 {
     const auto& now = *model.find(law);
     for (const auto& start : now.effect->starts(now.operatingRange)) {
-        auto there = now;
         bool same = true;
-        for (std::size_t k = 0; k < there.parameters.size(); ++k) {
-            auto& p = there.parameters[k];
-            same = same && (p.strength || p.value == start[k]);
-            p.value = start[k];
-        }
+        for (std::size_t k = 0; k < start.size(); ++k)
+            same = same && (now.parameters[k].strength || now.parameters[k].value == start[k]);
         if (same)
             continue;
+        auto there = atStart(now, start);
         others.push_back(model);
         *std::find_if(others.back().components.begin(), others.back().components.end(),
                       [&](const Component& c) { return c.effect == there.effect; }) = std::move(there);
@@ -43,7 +49,7 @@ bool isNear(const Waypoint& one, const Waypoint& other, double share)
 FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<Model> others,
                                  const Progress& progress) const
 {
-    constexpr double near = -2.0, clearly = 1.0;  // dB
+    constexpr double near = -2.0;  // dB
     auto least = summary.usable() && !others.empty() ? left(model) : Left {};
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
@@ -51,7 +57,7 @@ FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<M
         const auto gains = [&](double enough) { return !summary.usable() || lost(least, left(others[n])) > enough; };
         if (!fit(others[n], brief, part.part(0.0, 0.4)).usable() || !gains(near))
             continue;
-        if (const auto run = fit(others[n], full, part.part(0.4, 1.0)); run.usable() && gains(clearly)) {
+        if (const auto run = fit(others[n], full, part.part(0.4, 1.0)); run.usable() && gains(worthAStart)) {
             model = std::move(others[n]);
             least = left(model);
             summary = run;
@@ -81,12 +87,40 @@ FitSummary WholeSearch::tryLaw(Model& model, const Score& proposed, const Progre
     return orBetter(model, summary, std::move(others), progress.part(first, 1.0));
 }
 
-bool WholeSearch::beginTrialsAt(const Waypoint& place)
+bool WholeSearch::startAnew(Model& model, FitSummary& summary, const Progress& progress) const
+{
+    std::vector<Model> others {model};
+    int laws = 0;
+    for (auto& component : others.front().components)
+        if (!component.effect->linear()) {
+            component = atStart(component, component.effect->starts(component.operatingRange).front());
+            ++laws;
+        }
+    if (laws < 2)
+        others.clear();  // the law alone from rest is one of its starts
+    for (const auto& component : model.components)
+        if (!component.effect->linear() && !base_.has(component.effect->id()))
+            addOtherStarts(others, model, component.effect->id());
+    if (others.empty())
+        return false;
+    const auto before = left(model);
+    auto found = model;
+    const auto begun = summary.usable() ? summary : fit(found, brief);
+    const auto run = orBetter(found, begun, std::move(others), progress);
+    if (!run.usable() || !(lost(before, left(found)) > worthAStart))
+        return false;
+    model = std::move(found);
+    summary = run;
+    return true;
+}
+
+bool WholeSearch::beginAt(const Waypoint& place, Attempt attempt)
 {
     constexpr double same = 0.1;
-    if (std::any_of(trials_.begin(), trials_.end(), [&](const Waypoint& one) { return isNear(one, place, same); }))
+    auto& before = tried_[attempt];
+    if (std::any_of(before.begin(), before.end(), [&](const Waypoint& one) { return isNear(one, place, same); }))
         return false;
-    trials_.push_back(place);
+    before.push_back(place);
     return true;
 }
 

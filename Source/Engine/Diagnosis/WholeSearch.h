@@ -95,8 +95,15 @@ public:
     FitSummary fitFromEachStart(Model&, const std::set<std::string>& newcomers, const Progress& = {}) const;
     /// @param model  the result: that of the score, whose newest effect is a law, fitted from each of its starts
     FitSummary tryLaw(Model& model, const Score&, const Progress& = {}) const;
-    /// Whether laws have not been tried one by one yet at such a place; from now on they have.
-    bool beginTrialsAt(const Waypoint&);
+    /// Fits from other starts of the laws that a model has: of each law that has several, and of all laws from rest. A
+    /// law that came in while others were missing may have done their work, in a shape from which no small step leads
+    /// back. Whether one leaves 1 dB less; the model and its fit are replaced then.
+    bool startAnew(Model&, FitSummary&, const Progress& = {}) const;
+
+    /// What is worth trying once at a place: it would come to the same again.
+    enum class Attempt { otherStarts, laws };
+    /// Whether that has not been tried yet at such a place; from now on it has.
+    bool beginAt(const Waypoint&, Attempt);
     void findPartsAnew(Model&) const;  ///< see FindAnew.h
     void raiseDegrees(Model&) const;   ///< of laws, as far as it pays
 
@@ -169,7 +176,7 @@ private:
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions options_;
-    Waypoints trials_;
+    std::map<Attempt, Waypoints> tried_;
 };
 
 }  // namespace excursion

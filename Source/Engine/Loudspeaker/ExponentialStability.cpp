@@ -78,9 +78,10 @@ std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes()
                 for (const double v : {-range->velocity, range->velocity})
                     for (const bool carries : {false, true}) {
                         y.setZero();
-                        y.head(3) << range->current * std::cos(angle * std::numbers::pi),
-                            0.25 * k * range->displacement, v;
-                        y[3] = rise * std::sin(angle * std::numbers::pi);
+                        const double place = 0.25 * k, left = std::sqrt(1.0 - place * place);
+                        y.head(3) << left * range->current * std::cos(angle * std::numbers::pi),
+                            place * range->displacement, v;
+                        y[3] = left * rise * std::sin(angle * std::numbers::pi);
                         if (carries && !carry(y, motions, v, rateAt))
                             continue;
                         const auto here = rateAt(y);

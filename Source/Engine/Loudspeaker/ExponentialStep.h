@@ -57,7 +57,9 @@ public:
     /// steps are stable; where the linear part is fast as well they may be beyond it (isStable).
     double fastestLaw();
 
-    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y. It depends on no step.
+    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y. It depends on no step. The
+    /// places have (x/X)^2 + (i/I)^2 <= 1: the largest current seldom meets the largest excursion. The tolerance of a
+    /// simulation guards those that do.
     std::vector<Eigen::MatrixXd> lawSlopes();
 
     /// Whether the difference between two motions grows no more within a step than the equations let it grow, about

@@ -23,7 +23,8 @@ struct ResponseTarget {
 
 /// Responses of every channel of a record at one level (all levels when -1), on a logarithmic grid of frequencies: in
 /// each band the cross-spectrum over the input's power, averaged over lines and realizations,
-///     G = sum Y conj(U) / sum |U|^2,   deviation from the part of Y that this leaves (noise, distortion, curvature).
+///     G = sum Y conj(U) / sum |U|^2,   deviation from the part of Y that this leaves (noise, distortion, curvature),
+/// of a pressure without its time of flight, which G has again at the mean frequency of the band.
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
 /// The responses nearest to those of a linear driver: of each channel from all levels together where that is no other

@@ -88,18 +88,42 @@ bool relaxes(const Model& model, bool electrical)
                        [&](const Component& c) { return c.effect->relaxes() && c.effect->electrical() == electrical; });
 }
 
+/// Whether another effect of a model has a law of the same base parameter.
+bool sharesBase(const Model& model, const Effect& effect)
+{
+    const auto own = effect.law();
+    return own && std::any_of(model.components.begin(), model.components.end(), [&](const Component& c) {
+               const auto other = c.effect->law();
+               return c.effect != &effect && other && other->base == own->base;
+           });
+}
+
+/// Parameters of a kind become free where what they need has come in, and zero where it has gone.
+void follow(Component& component, bool Parameter::*kind, bool OperatingRange::*now, bool present)
+{
+    if (std::exchange(component.operatingRange.*now, present) == present)
+        return;
+    for (auto& p : component.parameters)
+        if (p.*kind) {
+            p.free = present;
+            p.value = present ? p.value : 0.0;
+        }
+}
+
 }  // namespace
 
 bool movable(const Model& model, const Effect& effect, const Parameter& p)
 {
     const bool listens = model.path.parameters[1].free;  // the delay is, where a pressure was measured
-    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model, effect.electrical()));
+    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model, effect.electrical()))
+           && (!p.joint || sharesBase(model, effect));
 }
 
 Model withEffect(Model model, const Effect& effect, const OperatingRange& visited, std::size_t start)
 {
     OperatingRange operatingRange = visited;
     operatingRange.relaxed = relaxes(model, effect.electrical());
+    operatingRange.joint = sharesBase(model, effect);
     if (const auto base = effect.sizedBy(); !base.empty())
         operatingRange.scale = model.baseParameter(base).value;
     Component component {&effect, operatingRange, effect.parameters(operatingRange)};
@@ -140,16 +164,10 @@ void followOthers(Model& model)
     const bool coil = relaxes(model, true), suspension = relaxes(model, false);
     for (std::size_t k = 0; k < model.components.size(); ++k) {
         auto& component = model.components[k];
-        const bool yields = component.effect->electrical() ? coil : suspension;
         resize(model, k);
-        if (component.operatingRange.relaxed == yields)
-            continue;
-        component.operatingRange.relaxed = yields;
-        for (auto& p : component.parameters)
-            if (p.relaxed) {
-                p.free = yields;
-                p.value = yields ? p.value : 0.0;
-            }
+        follow(component, &Parameter::relaxed, &OperatingRange::relaxed,
+               component.effect->electrical() ? coil : suspension);
+        follow(component, &Parameter::joint, &OperatingRange::joint, sharesBase(model, *component.effect));
     }
 }
 

@@ -131,8 +131,12 @@ Component componentFrom(const JsonField& field, const Effect& effect, const Oper
 {
     Component component {&effect, operatingRange,
                          parametersFrom(field.at("parameters"), effect.parameters(operatingRange))};
-    component.operatingRange.relaxed = std::any_of(component.parameters.begin(), component.parameters.end(),
-                                                   [](const Parameter& p) { return p.relaxed && p.value != 0.0; });
+    const auto anyOf = [&](bool Parameter::*kind) {
+        return std::any_of(component.parameters.begin(), component.parameters.end(),
+                           [&](const Parameter& p) { return p.*kind && p.value != 0.0; });
+    };
+    component.operatingRange.relaxed = anyOf(&Parameter::relaxed);
+    component.operatingRange.joint = anyOf(&Parameter::joint);
     return component;
 }
 

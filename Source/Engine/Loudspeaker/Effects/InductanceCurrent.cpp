@@ -16,8 +16,9 @@ namespace {
 /// An even law saturates the iron; an odd one is the field of the coil that adds to the magnet's or takes from it. Iron
 /// that the coil has left has less to saturate:
 ///     g(x) = 1 + sum_n q_n [T_n(s) - T_n(0)],  s = x/X within the visited range, n = 1 .. 10.
-/// Where Le(x, i) is a product of both laws g is Le(x)/Le; where data does not tell, g is 1. What changes with x makes
-/// a force, dg/dx int_0^i c j dj. Beyond the visited range the flux goes on with the slope that it has at the end.
+/// Where Le(x, i) is a product of both laws g is Le(x)/Le; where data does not tell, g is 1. It is 1, too, in a model
+/// without Le(x), whose work it would do in a wrong shape. What changes with x makes a force, dg/dx int_0^i c j dj.
+/// Beyond the visited range the flux goes on with the slope that it has at the end.
 class InductanceCurrent final : public EffectOf<InductanceCurrent> {
 public:
     InductanceCurrent()
@@ -46,8 +47,10 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= places; ++n)
-            result.push_back(
-                {.name = "q" + std::to_string(n), .unit = "1", .prior = curve::plausible(n, plausiblePlace)});
+            result.push_back({.name = "q" + std::to_string(n),
+                              .unit = "1",
+                              .joint = true,
+                              .prior = curve::plausible(n, plausiblePlace)});
         return result;
     }
     int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + places + 1; }
