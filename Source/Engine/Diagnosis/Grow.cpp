@@ -222,7 +222,8 @@ Growth::Outcome Growth::byVote(const Progress& progress)
 bool Growth::byOtherStarts(const Progress& progress)
 {
     lookAgain();  // what was rejected chose the residuals
-    if (!record_.noiseKnown || !search_.beginAt(place(), WholeSearch::Attempt::otherStarts))
+    if (!record_.noiseKnown || now_.chiSquaredPerValue < atNoise
+        || !search_.beginAt(place(), WholeSearch::Attempt::otherStarts))
         return false;
     auto anew = whole_.model;
     auto summary = whole_.fit;

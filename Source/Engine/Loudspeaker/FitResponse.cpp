@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -36,6 +37,27 @@ std::vector<Eigen::Index> movedIn(const Model& model)
         visit(component);
     visit(model.path);
     return moved;
+}
+
+/// The model's response to each target; those that stand on the same frequencies share one run.
+std::vector<Response> respondTo(const std::vector<ResponseTarget>& targets, const Model& model, bool withGradient)
+{
+    std::vector<Response> responses(targets.size());
+    std::vector<std::size_t> left(targets.size());
+    std::iota(left.begin(), left.end(), std::size_t {0});
+    while (!left.empty()) {
+        const auto& frequency = targets[left.front()].frequency;
+        const auto others = std::stable_partition(left.begin(), left.end(),
+                                                  [&](std::size_t n) { return targets[n].frequency == frequency; });
+        std::vector<Quantity> quantities;
+        std::transform(left.begin(), others, std::back_inserter(quantities),
+                       [&](std::size_t n) { return targets[n].quantity; });
+        auto together = respond(model, quantities, frequency, withGradient);
+        for (std::size_t k = 0; k < together.size(); ++k)
+            responses[left[k]] = std::move(together[k]);
+        left.erase(left.begin(), others);
+    }
+    return responses;
 }
 
 /// Residuals of one target at the model's present parameters, added to the normal equations in the scale of the search.
@@ -71,6 +93,14 @@ void add(const ResponseTarget& target, const Response& response, const std::vect
     sum.g.noalias() += J.transpose() * r;
 }
 
+void addAll(const std::vector<ResponseTarget>& targets, const Model& model, const std::vector<Eigen::Index>& active,
+            const Eigen::VectorXd& chain, bool gradient, NormalEquations& sum)
+{
+    const auto responses = respondTo(targets, model, gradient);
+    for (std::size_t n = 0; n < targets.size(); ++n)
+        add(targets[n], responses[n], active, chain, gradient, sum);
+}
+
 /// What is plausible beforehand, against residuals of this variance.
 void addPriors(const Model& model, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& chain,
                double variance, bool gradient, NormalEquations& sum)
@@ -98,9 +128,7 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size()), count = static_cast<Eigen::Index>(all.size());
     NormalEquations sum;
-    for (const auto& target : targets)
-        add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, Eigen::VectorXd::Ones(P),
-            true, sum);
+    addAll(targets, model, active, Eigen::VectorXd::Ones(P), true, sum);
     const double variance = sum.cost / std::max(1.0, sum.rows - static_cast<double>(P));
     const Eigen::VectorXd alone = sum.N.diagonal();
     addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
@@ -130,8 +158,7 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
     const auto P = static_cast<Eigen::Index>(active.size());
     const Eigen::VectorXd ones = Eigen::VectorXd::Ones(P);
     NormalEquations sum;
-    for (const auto& target : targets)
-        add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, ones, true, sum);
+    addAll(targets, model, active, ones, true, sum);
     addPriors(model, active, ones, sum.cost / std::max(1.0, sum.rows), true, sum);
     std::vector<Eigen::Index> every(active.size());
     std::iota(every.begin(), every.end(), Eigen::Index {0});
@@ -196,9 +223,7 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
         for (Eigen::Index k = 0; k < P; ++k)
             if (logarithmic[static_cast<std::size_t>(k)])
                 chain[k] = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value;
-        for (const auto& target : targets)
-            add(target, respond(model, {target.quantity}, target.frequency, gradient).front(), active, chain, gradient,
-                sum);
+        addAll(targets, model, active, chain, gradient, sum);
         if (variance == 0.0)
             variance = sum.cost / std::max(1.0, sum.rows);
         addPriors(model, active, chain, variance, gradient, sum);
