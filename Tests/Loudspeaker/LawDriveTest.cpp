@@ -12,7 +12,7 @@ using namespace excursion;
 
 namespace {
 
-constexpr double sampleRate = 48000.0;
+constexpr double fedRate = 48000.0;
 constexpr std::size_t samples = 4800, lines = 300;  // of 10 Hz: room for every second sample
 
 /// Bass and a tone at the upper end of the compared lines.
@@ -20,8 +20,8 @@ ShownMotion someMotion(const OperatingRange& e)
 {
     ShownMotion motion;
     for (std::size_t n = 0; n < ShownMotion::fine * samples; ++n) {
-        const double t = static_cast<double>(n) / (ShownMotion::fine * sampleRate),
-                     bass = 2.0 * std::numbers::pi * 40.0, treble = 2.0 * std::numbers::pi * 1310.0;
+        const double t = static_cast<double>(n) / (ShownMotion::fine * fedRate), bass = 2.0 * std::numbers::pi * 40.0,
+                     treble = 2.0 * std::numbers::pi * 1310.0;
         motion.x.push_back(0.8 * e.displacement * std::sin(bass * t));
         motion.v.push_back(0.8 * e.displacement * bass * std::cos(bass * t));
         motion.a.push_back(-0.8 * e.displacement * bass * bass * std::sin(bass * t));
@@ -56,8 +56,8 @@ TEST_CASE("Slopes on every second sample are those of all samples", "[law-drive]
             rest.value = Eigen::VectorXd::Zero(size);
             rest.gradient = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(law.parameters.size()));
             const std::vector<bool> all(law.parameters.size(), true);
-            const auto few = driveOf(law, motion, rest, sampleRate, all, lines).slopes,
-                       every = driveOf(law, motion, rest, sampleRate, all, samples / 2 + 1).slopes;
+            const auto few = driveOf(law, motion, rest, fedRate, all, lines).slopes,
+                       every = driveOf(law, motion, rest, fedRate, all, samples / 2 + 1).slopes;
             REQUIRE((few && every));
             int compared = 0;
             for (std::size_t k = 0; k < all.size(); ++k)

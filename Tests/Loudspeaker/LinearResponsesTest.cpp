@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Signal/Fft.h"
 #include "SmallSetup.h"
 
 #include <catch2/catch.hpp>
@@ -19,6 +20,24 @@ Record recordOf(const bench::Loudspeaker& truth, double noiseDb)
     setup.excitation.levels = {0.2, 4.0};
     setup.noiseDb = noiseDb;
     return makeRecord(bench::measure(truth, setup));
+}
+
+/// Leaves every fourth line of odd ones: evenly spaced lines tell a delay but for a part of the period.
+void keepEveryOther(Record& record)
+{
+    const auto isLeft = [](std::size_t k) { return k % 4 == 1; };
+    for (auto& section : record.sections) {
+        auto input = fft(section.input);
+        REQUIRE(input.size() == section.measured.front().size());  // one period
+        for (std::size_t k = 0; k < input.size(); ++k)
+            if (!isLeft(k)) {
+                input[k] = 0.0;
+                for (auto& channel : section.measured)
+                    channel[k] = 0.0;
+            }
+        section.input = inverseFft(input, section.window);
+        std::erase_if(section.excited, [&](int k) { return !isLeft(static_cast<std::size_t>(k)); });
+    }
 }
 
 }  // namespace
@@ -51,16 +70,20 @@ TEST_CASE("The time of flight of a far microphone leaves the response of the sou
     setup.excitation.period = 16384;
     setup.microphoneDistance = 1.2;  // 3.5 ms: up to 5 kHz the phase turns by half a turn within a band
     const bench::Loudspeaker truth;
-    const auto record = makeRecord(bench::measure(truth, setup));
+    auto record = makeRecord(bench::measure(truth, setup));
+    if (GENERATE(false, true))
+        keepEveryOther(record);
     const auto targets = responsesOf(record, -1, 48);
     const auto heard = std::find_if(targets.begin(), targets.end(),
                                     [](const auto& t) { return t.quantity == Quantity::pressure; });
     REQUIRE(heard != targets.end());
     const double scale = 1.2 / (2.0 * std::numbers::pi * setup.microphoneDistance) * truth.coneArea;
     for (std::size_t k = 0; k < heard->frequency.size(); ++k) {
-        const auto pressure = scale * truth.small(heard->frequency[k]).radiated;
-        CAPTURE(heard->frequency[k]);
-        CHECK(std::abs(heard->value[k]) == Approx(std::abs(pressure)).epsilon(0.01));
+        const double f = heard->frequency[k];
+        const auto pressure = scale * truth.small(f).radiated
+                              * std::polar(1.0, -2.0 * std::numbers::pi * f * setup.microphoneDistance / 343.0);
+        CAPTURE(f);
+        CHECK(std::abs(heard->value[k] - pressure) < 0.02 * std::abs(pressure));
         CHECK(heard->deviation[k] < 0.01 * std::abs(pressure));
     }
 }

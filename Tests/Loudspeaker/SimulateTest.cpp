@@ -189,7 +189,7 @@ TEST_CASE("A coil keeps an inductance where a law leaves it none", "[simulate]")
     std::vector<double> z(static_cast<std::size_t>(dynamics.order()), 0.0), rate = z;
     z[1] = x;
     dynamics.rates(z.data(), 1.0, rate.data());
-    CHECK(rate[0] == Approx(1.0 / (Le / 10.0)));
+    CHECK(rate[0] == Approx(1.0 / (Le / 20.0)));
 }
 
 TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]")

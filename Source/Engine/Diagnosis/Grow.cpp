@@ -125,7 +125,7 @@ public:
     bool byOtherStarts(const Progress&);
 
     /// One law, where votes lead no further and much is left: each is fitted, and of those that take 3 dB off a channel
-    /// the one comes in that leaves least. Whether there is one.
+    /// the one comes in that leaves least. Whether there is one. byOtherStarts() has looked again before.
     bool byTrial(const Progress&);
 
 private:
@@ -229,7 +229,7 @@ bool Growth::byOtherStarts(const Progress& progress)
     auto summary = whole_.fit;
     if (!search_.startAnew(anew, summary, progress))
         return false;
-    strange_ = {};
+    strange_ = search_.takeOutImplausible(anew);
     takeIn(std::move(anew), summary);
     lookAgain();
     return true;
@@ -238,7 +238,6 @@ bool Growth::byOtherStarts(const Progress& progress)
 bool Growth::byTrial(const Progress& progress)
 {
     constexpr double convincing = 3.0;  // dB
-    lookAgain();                        // what was rejected chose the residuals
     if (!record_.noiseKnown || now_.chiSquaredPerValue < nearNoise
         || !search_.beginAt(place(), WholeSearch::Attempt::laws))
         return false;

@@ -99,15 +99,17 @@ bool WholeSearch::startAnew(Model& model, FitSummary& summary, const Progress& p
     if (laws < 2)
         others.clear();  // the law alone from rest is one of its starts
     for (const auto& component : model.components)
-        if (!component.effect->linear() && !base_.has(component.effect->id()))
+        if (!component.effect->linear() && !base_.has(component.effect->id())
+            && component.effect->starts(component.operatingRange).size() > 1)
             addOtherStarts(others, model, component.effect->id());
     if (others.empty())
         return false;
     const auto before = left(model);
     auto found = model;
-    const auto begun = summary.usable() ? summary : fit(found, brief);
-    const auto run = orBetter(found, begun, std::move(others), progress);
-    if (!run.usable() || !(lost(before, left(found)) > worthAStart))
+    const auto begun = summary.usable() ? summary : fit(found, brief, progress.part(0.0, 0.1));
+    const auto run = orBetter(found, begun, std::move(others), progress.part(0.1, 1.0));
+    const auto then = left(found);
+    if (!run.usable() || !(lost(before, then) > worthAStart && then.chiSquaredPerValue < before.chiSquaredPerValue))
         return false;
     model = std::move(found);
     summary = run;

@@ -62,6 +62,7 @@ void takeErrors(Model& part, const std::vector<bool>& held, const Model& whole)
 FitSummary fitLinear(Model& part, const Model& whole, const Record& record, const FitOptions& options,
                      const Progress& progress)
 {
+    followOthers(part);
     std::vector<bool> free, held;
     for (auto& component : part.components)
         for (auto& p : component.parameters) {

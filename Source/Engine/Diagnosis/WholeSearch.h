@@ -97,7 +97,7 @@ public:
     FitSummary tryLaw(Model& model, const Score&, const Progress& = {}) const;
     /// Fits from other starts of the laws that a model has: of each law that has several, and of all laws from rest. A
     /// law that came in while others were missing may have done their work, in a shape from which no small step leads
-    /// back. Whether one leaves 1 dB less; the model and its fit are replaced then.
+    /// back. Whether one leaves 1 dB less, and less in all; the model and its fit are replaced then.
     bool startAnew(Model&, FitSummary&, const Progress& = {}) const;
 
     /// What is worth trying once at a place: it would come to the same again.

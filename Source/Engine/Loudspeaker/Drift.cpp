@@ -85,9 +85,10 @@ void tell(Drift& drift, const Model& before, const std::vector<std::string>& nam
         }
 }
 
-Drift follow(const Model& before, const std::vector<std::string>& names, const Search& search)
+Drift follow(Model before, const std::vector<std::string>& names, const Search& search)
 {
     requireNames(before, names);
+    followOthers(before);  // as a fit would: what is held stays as it is
     Drift drift;
     drift.model = before;
     const auto all = parametersOf(drift.model);

@@ -36,14 +36,14 @@ struct Balance {
     T mass {0.0};        ///< kg
 };
 
-/// What a coil keeps of its inductance L = d(phi)/di, with L0 at rest and l = L0/10, the share of air:
+/// What a coil keeps of its inductance L = d(phi)/di, with L0 at rest and l = L0/20, the share of air:
 ///     L from 2 l on,   l + L^2/(4 l) from 0 to 2 l,   l below.
 /// Iron can be saturated or left, no more. A law that says less has been bent where the take seldom was; without this
 /// bound its current would run away.
 template <class T>
 T keptInductance(const T& L, const T& L0)
 {
-    constexpr double air = 1.0 / 10.0;
+    constexpr double air = 1.0 / 20.0;
     const T l = air * L0;
     if (L > 2.0 * l)
         return L;
@@ -76,7 +76,7 @@ struct OperatingRange {
     double duration = 10.0;  ///< s, of the take: the time that a slow memory had
     /// relaxed parameters may differ from zero; false saves the memory that they need
     bool relaxed = true;
-    bool joint = true;  ///< joint parameters may differ from zero
+    bool joint = true;  ///< joint parameters may differ from zero: another law of the same base parameter is there
 };
 
 struct Parameter {

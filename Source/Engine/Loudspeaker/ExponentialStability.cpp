@@ -53,7 +53,7 @@ bool samePlaces(const OperatingRange& a, const OperatingRange& b)
 
 }  // namespace
 
-std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes()
+std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes(Places places)
 {
     std::vector<const OperatingRange*> ranges;
     for (const auto& law : laws_)
@@ -78,10 +78,13 @@ std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes()
                 for (const double v : {-range->velocity, range->velocity})
                     for (const bool carries : {false, true}) {
                         y.setZero();
-                        const double place = 0.25 * k, left = std::sqrt(1.0 - place * place);
-                        y.head(3) << left * range->current * std::cos(angle * std::numbers::pi),
+                        const double place = 0.25 * k,
+                                     share = places == Places::all ? 1.0 : std::sqrt(1.0 - place * place);
+                        if (share == 0.0 && angle != 0.0)
+                            continue;  // all angles are one place
+                        y.head(3) << share * range->current * std::cos(angle * std::numbers::pi),
                             place * range->displacement, v;
-                        y[3] = left * rise * std::sin(angle * std::numbers::pi);
+                        y[3] = share * rise * std::sin(angle * std::numbers::pi);
                         if (carries && !carry(y, motions, v, rateAt))
                             continue;
                         const auto here = rateAt(y);

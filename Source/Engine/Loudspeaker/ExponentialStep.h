@@ -57,10 +57,11 @@ public:
     /// steps are stable; where the linear part is fast as well they may be beyond it (isStable).
     double fastestLaw();
 
-    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y. It depends on no step. The
-    /// places have (x/X)^2 + (i/I)^2 <= 1: the largest current seldom meets the largest excursion. The tolerance of a
-    /// simulation guards those that do.
-    std::vector<Eigen::MatrixXd> lawSlopes();
+    /// Where the laws are looked at: all over the visited range, or where (x/X)^2 + (i/I)^2 <= 1. Beyond that a fit
+    /// knows little of a law, as the largest current seldom meets the largest excursion.
+    enum class Places { all, likely };
+    /// J = dN/dy there, rates and the laws' memories x y. It depends on no step.
+    std::vector<Eigen::MatrixXd> lawSlopes(Places = Places::all);
 
     /// Whether the difference between two motions grows no more within a step than the equations let it grow, about
     /// places all over the visited range. The laws are linear about a place, N = J y, and the step is a matrix there,

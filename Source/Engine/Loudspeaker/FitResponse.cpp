@@ -46,9 +46,10 @@ std::vector<Response> respondTo(const std::vector<ResponseTarget>& targets, cons
     std::vector<std::size_t> left(targets.size());
     std::iota(left.begin(), left.end(), std::size_t {0});
     while (!left.empty()) {
-        const auto& frequency = targets[left.front()].frequency;
-        const auto others = std::stable_partition(left.begin(), left.end(),
-                                                  [&](std::size_t n) { return targets[n].frequency == frequency; });
+        const auto first = left.front();
+        const auto& frequency = targets[first].frequency;
+        const auto others = std::stable_partition(
+            left.begin(), left.end(), [&](std::size_t n) { return n == first || targets[n].frequency == frequency; });
         std::vector<Quantity> quantities;
         std::transform(left.begin(), others, std::back_inserter(quantities),
                        [&](std::size_t n) { return targets[n].quantity; });

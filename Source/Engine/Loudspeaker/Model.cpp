@@ -88,20 +88,11 @@ bool relaxes(const Model& model, bool electrical)
                        [&](const Component& c) { return c.effect->relaxes() && c.effect->electrical() == electrical; });
 }
 
-/// Whether another effect of a model has a law of the same base parameter.
-bool sharesBase(const Model& model, const Effect& effect)
-{
-    const auto own = effect.law();
-    return own && std::any_of(model.components.begin(), model.components.end(), [&](const Component& c) {
-               const auto other = c.effect->law();
-               return c.effect != &effect && other && other->base == own->base;
-           });
-}
-
-/// Parameters of a kind become free where what they need has come in, and zero where it has gone.
+/// Parameters of a kind become free where what they need has come in; they are zero and held without it.
 void follow(Component& component, bool Parameter::*kind, bool OperatingRange::*now, bool present)
 {
-    if (std::exchange(component.operatingRange.*now, present) == present)
+    const bool before = std::exchange(component.operatingRange.*now, present);
+    if (present && before)
         return;
     for (auto& p : component.parameters)
         if (p.*kind) {
@@ -111,6 +102,15 @@ void follow(Component& component, bool Parameter::*kind, bool OperatingRange::*n
 }
 
 }  // namespace
+
+bool sharesBase(const Model& model, const Effect& effect)
+{
+    const auto own = effect.law();
+    return own && std::any_of(model.components.begin(), model.components.end(), [&](const Component& c) {
+               const auto other = c.effect->law();
+               return c.effect != &effect && other && other->base == own->base;
+           });
+}
 
 bool movable(const Model& model, const Effect& effect, const Parameter& p)
 {

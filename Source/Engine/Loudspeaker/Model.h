@@ -70,8 +70,10 @@ double radiationPerArea();
 /// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
 Model makeModel(std::string_view baseId);
 
+/// Whether the model has a law of the same base parameter beside this effect's own.
+bool sharesBase(const Model&, const Effect&);
 /// Whether a fit of the model may change this parameter of a new effect. Not if the parameter is only heard and there
-/// is no sound channel.
+/// is no sound channel, nor if it has a meaning only together with an effect that the model has not.
 bool movable(const Model&, const Effect&, const Parameter&);
 /// The model with this effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);

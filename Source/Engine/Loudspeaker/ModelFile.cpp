@@ -131,12 +131,8 @@ Component componentFrom(const JsonField& field, const Effect& effect, const Oper
 {
     Component component {&effect, operatingRange,
                          parametersFrom(field.at("parameters"), effect.parameters(operatingRange))};
-    const auto anyOf = [&](bool Parameter::*kind) {
-        return std::any_of(component.parameters.begin(), component.parameters.end(),
-                           [&](const Parameter& p) { return p.*kind && p.value != 0.0; });
-    };
-    component.operatingRange.relaxed = anyOf(&Parameter::relaxed);
-    component.operatingRange.joint = anyOf(&Parameter::joint);
+    component.operatingRange.relaxed = std::any_of(component.parameters.begin(), component.parameters.end(),
+                                                   [](const Parameter& p) { return p.relaxed && p.value != 0.0; });
     return component;
 }
 
@@ -212,6 +208,8 @@ Model modelFromJson(const JsonField& field)
         model.components.push_back(
             componentFrom(item, effect, operatingRangeFrom(item.at("operatingRange", "extent"))));
     }
+    for (auto& component : model.components)
+        component.operatingRange.joint = sharesBase(model, *component.effect);
     // Older files do not tell the scale of what creeps; they have a 1 there, and are written again as they were read.
     constexpr double untold = 1.0;
     for (std::size_t k = 1; k < model.components.size(); ++k)

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace excursion {
 namespace {
@@ -42,70 +43,131 @@ bool agree(const ResponseTarget& rough, const ResponseTarget& exact)
     return true;
 }
 
-/// By how many seconds the sound is late. It turns the phase within a band, where a mean over the lines of a far
-/// microphone's response would lie, or vanish. 0 for the other channels.
-double timeOfFlight(const Record& record, std::size_t channel, const Section& section)
+/// The sections that are asked, each with the spectrum of its input, and the bands that they are averaged in.
+struct Asked {
+    struct One {
+        const Section* section;
+        std::vector<Complex> input;
+    };
+    const Record& record;
+    std::vector<One> sections;
+    double low, high;  ///< Hz
+    int pointsPerOctave;
+
+    /// The lines of a section that tell something.
+    template <class Use>
+    void eachLine(const Section& section, const Use& use) const
+    {
+        const auto within = [&](std::size_t k) {
+            if (const double f = record.frequency(section, k); f >= low && f <= high)
+                use(k, f);
+        };
+        if (!section.excited.empty())
+            for (const int k : section.excited)
+                within(static_cast<std::size_t>(k));
+        else
+            for (std::size_t k = 1; k < section.window / 2; ++k)
+                within(k);
+    }
+
+    /// @param delay  s, by which a channel is made earlier
+    std::vector<Cell> cells(std::size_t channel, double delay) const
+    {
+        const int octaves = std::max(4, static_cast<int>(std::ceil(std::log2(high / low) * pointsPerOctave)));
+        std::vector<Cell> grid(static_cast<std::size_t>(octaves) + 1);
+        for (const auto& one : sections)
+            eachLine(*one.section, [&](std::size_t k, double f) {
+                const auto output = one.section->measured[channel][k], input = one.input[k];
+                const double deviation = one.section->deviation[channel][k], power = std::norm(input);
+                auto& cell = grid[static_cast<std::size_t>(std::log2(f / low) * pointsPerOctave)];
+                cell.cross += output * std::conj(input) * std::polar(1.0, omega * f * delay);
+                cell.input += power;
+                cell.output += std::norm(output);
+                cell.noise += deviation * deviation * power;
+                cell.weightedFrequency += f * power;
+                ++cell.count;
+            });
+        return grid;
+    }
+};
+
+/// The power of the output that the means of the bands explain.
+double explained(const std::vector<Cell>& grid)
+{
+    double sum = 0.0;
+    for (const auto& cell : grid)
+        sum += cell.input > 0.0 ? std::norm(cell.cross) / cell.input : 0.0;
+    return sum;
+}
+
+/// By how many seconds the sound of a section is late; 0 where nothing tells.
+double timeOfFlight(const Asked& asked, const Asked::One& one, std::size_t channel)
 {
     constexpr std::size_t fewest = 64;  // samples
-    if (record.channels[channel] != Quantity::pressure || section.window < fewest)
+    const auto& section = *one.section;
+    if (section.window < fewest)
         return 0.0;
     const auto input = std::span(section.input).last(section.window);
     const auto output = inverseFft(section.measured[channel], section.window);
-    if (std::all_of(output.begin(), output.end(), [](double y) { return y == 0.0; })
-        || std::all_of(input.begin(), input.end(), [](double u) { return u == 0.0; }))
+    const auto isSilent = [](double value) { return value == 0.0; };
+    if (std::all_of(output.begin(), output.end(), isSilent) || std::all_of(input.begin(), input.end(), isSilent))
         return 0.0;
+    const double rate = asked.record.sampleRate, window = static_cast<double>(section.window);
     DelayOptions options;
     options.period = section.periodic ? static_cast<int>(section.window) : 0;
-    return estimateDelay(input, output, options).samples / record.sampleRate;
+    options.lowest = asked.low / rate;
+    options.highest = std::min(0.5, asked.high / rate);
+    double samples = estimateDelay(input, output, options).samples;
+    if (!std::isfinite(samples))
+        return 0.0;
+    int apart = 0;  // lines that are evenly so far apart tell a delay but for so many parts of the window
+    for (std::size_t k = 1; k < section.excited.size(); ++k)
+        apart = std::gcd(apart, section.excited[k] - section.excited[k - 1]);
+    if (apart > 0)
+        samples -= std::round(samples * apart / window) * window / apart;
+    return samples / rate;
+}
+
+/// The delay to take off before the lines of a band are averaged: it turns the phase within a band, where the mean of a
+/// far microphone's response would lie, or vanish. 0 where that explains no more, and for all channels but the sound.
+double usefulDelay(const Asked& asked, std::size_t channel)
+{
+    const auto power = [&](const Asked::One& one) {
+        double sum = 0.0;
+        asked.eachLine(*one.section, [&](std::size_t k, double) { sum += std::norm(one.input[k]); });
+        return sum;
+    };
+    if (asked.record.channels[channel] != Quantity::pressure || asked.sections.empty())
+        return 0.0;
+    const auto loudest = std::max_element(asked.sections.begin(), asked.sections.end(),
+                                          [&](const auto& a, const auto& b) { return power(a) < power(b); });
+    const double delay = timeOfFlight(asked, *loudest, channel);
+    return explained(asked.cells(channel, delay)) > explained(asked.cells(channel, 0.0)) ? delay : 0.0;
 }
 
 }  // namespace
 
 std::vector<ResponseTarget> responsesOf(const Record& record, int level, int pointsPerOctave)
 {
-    std::vector<ResponseTarget> targets;
-    const double low = std::max(record.bandLow * 0.99, 1e-3);
-    const int cells = std::max(4,
-                               static_cast<int>(std::ceil(std::log2(record.bandHigh * 1.01 / low) * pointsPerOctave)));
-    std::vector<std::pair<const Section*, std::vector<Complex>>> used;  // with the spectrum of the input
+    Asked asked {record, {}, std::max(record.bandLow * 0.99, 1e-3), record.bandHigh * 1.01, pointsPerOctave};
     for (const auto& section : record.sections)
         if (!section.validation && (level < 0 || section.level < 0 || section.level == level))
-            used.emplace_back(&section, fft(std::span(section.input).last(section.window)));
+            asked.sections.push_back({&section, fft(std::span(section.input).last(section.window))});
+    std::vector<ResponseTarget> targets;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
-        const double delay = used.empty() ? 0.0 : timeOfFlight(record, c, *used.back().first);
-        std::vector<Cell> grid(static_cast<std::size_t>(cells) + 1);
+        const double delay = usefulDelay(asked, c);
+        const auto grid = asked.cells(c, delay);
         double totalInput = 0.0;
-        std::size_t lines = 0;
-        for (const auto& one : used) {
-            const auto& section = *one.first;
-            const auto& U = one.second;
-            const auto add = [&](std::size_t k) {
-                const double f = record.frequency(section, k);
-                if (f < low || f > record.bandHigh * 1.01)
-                    return;
-                auto& cell = grid[static_cast<std::size_t>(std::log2(f / low) * pointsPerOctave)];
-                cell.cross += section.measured[c][k] * std::conj(U[k]) * std::polar(1.0, omega * f * delay);
-                cell.input += std::norm(U[k]);
-                cell.output += std::norm(section.measured[c][k]);
-                cell.noise += section.deviation[c][k] * section.deviation[c][k] * std::norm(U[k]);
-                cell.weightedFrequency += f * std::norm(U[k]);
-                ++cell.count;
-                totalInput += std::norm(U[k]);
-                ++lines;
-            };
-            if (!section.excited.empty())
-                for (const int k : section.excited)
-                    add(static_cast<std::size_t>(k));
-            else
-                for (std::size_t k = 1; k < section.window / 2; ++k)
-                    add(k);
+        int lines = 0;
+        for (const auto& cell : grid) {
+            totalInput += cell.input;
+            lines += cell.count;
         }
         ResponseTarget target;
         target.quantity = record.channels[c];
         for (const auto& cell : grid) {
             // A cell with next to no input power says nothing.
-            if (cell.count == 0
-                || cell.input < 1e-7 * totalInput * cell.count / static_cast<double>(std::max<std::size_t>(lines, 1)))
+            if (cell.count == 0 || !(cell.input > 1e-7 * totalInput * cell.count / std::max(lines, 1)))
                 continue;
             const double f = cell.weightedFrequency / cell.input;
             const Complex G = cell.cross / cell.input * std::polar(1.0, -omega * f * delay);

@@ -135,7 +135,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
 
 int stableSubsteps(const Model& model, double sampleRate)
 {
-    const auto slopes = ExponentialStep(model, 1.0 / sampleRate).lawSlopes();
+    const auto slopes = ExponentialStep(model, 1.0 / sampleRate).lawSlopes(ExponentialStep::Places::likely);
     int substeps = 1;
     while (substeps < mostSubsteps && !ExponentialStep(model, 1.0 / (sampleRate * substeps)).isStable(slopes))
         ++substeps;
