@@ -31,10 +31,9 @@ TEST_CASE("Laws whose shapes hold one another back start again from rest", "[dia
     truth.dampingVelocity = bench::Curve {bench::Curve::Shape::rootDrag, 0.0, 0.5, 0.8, 0.0};
     auto setup = smallSetup();
     setup.excitation.levels = {0.5, 2.0};
-    auto record = makeRecord(bench::measure(truth, setup));
-    auto base = startModel(record);
-    adapt(record, base);
-    REQUIRE(fit(base, record, estimationSections(record)).usable());
+    const BasedTake take(truth, setup);
+    const auto& [record, base, run] = take;
+    REQUIRE(run.usable());
     WholeSearch search(base, record, {});
     const auto range = visitedRange(base, record);
     auto model = withEffect(withEffect(base, effectNamed("damping-velocity"), range), effectNamed("friction"), range);
@@ -70,10 +69,9 @@ TEST_CASE("Linear effects that only make sense together are found together", "[d
     truth.stiffness = bench::Curve {bench::Curve::Shape::coshSpring, 0.0, 3e-3, 0.0, 0.0};
     auto setup = smallSetup();
     setup.excitation.levels = {0.5, 2.0};
-    auto record = makeRecord(bench::measure(truth, setup));
-    auto base = startModel(record);
-    adapt(record, base);
-    REQUIRE(fit(base, record, estimationSections(record)).usable());
+    const BasedTake take(truth, setup);
+    const auto& [record, base, run] = take;
+    REQUIRE(run.usable());
     WholeSearch search(base, record, {});
     search.chooseResiduals(base);
     const auto found = search.withLinear({&effectNamed("creep"), &effectNamed("eddy-currents")}, base);

@@ -19,8 +19,7 @@ struct Grown {
 
 /// Puts the effects that the record shows into a base: by rounds of voting, beside which the law comes in that alone
 /// would leave least, and where votes lead no further from other starts of its laws, or by trial of one law after the
-/// other. None where that comes to
-/// where another search has been.
+/// other. None where that comes to where another search has been.
 /// @param known  the path of the other search
 std::optional<Grown> grown(const Model& base, const Record&, WholeSearch&, const Waypoints& known,
                            const Progress& = {});

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -73,8 +74,8 @@ struct Asked {
     /// @param delay  s, by which a channel is made earlier
     std::vector<Cell> cells(std::size_t channel, double delay) const
     {
-        const int octaves = std::max(4, static_cast<int>(std::ceil(std::log2(high / low) * pointsPerOctave)));
-        std::vector<Cell> grid(static_cast<std::size_t>(octaves) + 1);
+        const int bands = std::max(4, static_cast<int>(std::ceil(std::log2(high / low) * pointsPerOctave)));
+        std::vector<Cell> grid(static_cast<std::size_t>(bands) + 1);
         for (const auto& one : sections)
             eachLine(*one.section, [&](std::size_t k, double f) {
                 const auto output = one.section->measured[channel][k], input = one.input[k];
@@ -128,21 +129,16 @@ double timeOfFlight(const Asked& asked, const Asked::One& one, std::size_t chann
     return samples / rate;
 }
 
-/// The delay to take off before the lines of a band are averaged: it turns the phase within a band, where the mean of a
-/// far microphone's response would lie, or vanish. 0 where that explains no more, and for all channels but the sound.
-double usefulDelay(const Asked& asked, std::size_t channel)
+/// The section with the most power at the lines that are asked.
+const Asked::One& loudestOf(const Asked& asked)
 {
-    const auto power = [&](const Asked::One& one) {
+    std::vector<double> power;
+    for (const auto& one : asked.sections) {
         double sum = 0.0;
         asked.eachLine(*one.section, [&](std::size_t k, double) { sum += std::norm(one.input[k]); });
-        return sum;
-    };
-    if (asked.record.channels[channel] != Quantity::pressure || asked.sections.empty())
-        return 0.0;
-    const auto loudest = std::max_element(asked.sections.begin(), asked.sections.end(),
-                                          [&](const auto& a, const auto& b) { return power(a) < power(b); });
-    const double delay = timeOfFlight(asked, *loudest, channel);
-    return explained(asked.cells(channel, delay)) > explained(asked.cells(channel, 0.0)) ? delay : 0.0;
+        power.push_back(sum);
+    }
+    return asked.sections[static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin())];
 }
 
 }  // namespace
@@ -155,8 +151,17 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
             asked.sections.push_back({&section, fft(std::span(section.input).last(section.window))});
     std::vector<ResponseTarget> targets;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
-        const double delay = usefulDelay(asked, c);
-        const auto grid = asked.cells(c, delay);
+        auto grid = asked.cells(c, 0.0);
+        double delay = 0.0;
+        if (record.channels[c] == Quantity::pressure && !asked.sections.empty()) {
+            // A time of flight turns the phase within a band, where the mean of a far microphone's response would lie,
+            // or vanish. It is believed where more is explained without it.
+            const double late = timeOfFlight(asked, loudestOf(asked), c);
+            if (auto earlier = asked.cells(c, late); explained(earlier) > explained(grid)) {
+                grid = std::move(earlier);
+                delay = late;
+            }
+        }
         double totalInput = 0.0;
         int lines = 0;
         for (const auto& cell : grid) {
