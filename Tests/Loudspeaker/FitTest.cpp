@@ -286,3 +286,42 @@ TEST_CASE("The power of an error is judged channel by channel, over all sections
     CHECK(worstPower({section({1.0, 100.0, 1.0}, {0.5, 100.0, 1.0})}) == Approx(1.0));
     CHECK(std::isinf(worstPower({section({1.0, 100.0, 0.0}, {0.5, 100.0, 1.0})})));
 }
+
+TEST_CASE("A spread of relaxations that has shrunk to nothing holds up no fit", "[fit]")
+{
+    auto record = makeRecord(bench::measure(bench::Loudspeaker {}, smallSetup()));
+    auto truth = startModel(record);
+    adapt(record, truth);
+    truth = withEffect(truth, effectNamed("creep"), visitedRange(truth, record));
+    auto& creep = truth.components.back().parameters;
+    creep[0].value = 0.2 * truth.baseParameter("K").value;
+    creep[1].value = 1.3;
+    creep[2].value = 0.0;  // one relaxation
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = true;
+    const auto sections = estimationSections(record);
+    const auto fits = outputError(truth, record, sections, {}, run);
+    for (std::size_t n = 0; n < sections.size(); ++n) {
+        auto& section = record.sections[sections[n]];
+        for (std::size_t c = 0; c < section.measured.size(); ++c)
+            for (std::size_t k = 0; k < section.measured[c].size(); ++k)
+                section.measured[c][k] = fits[n].predicted[c][k] + 0.7 * section.deviation[c][k];
+    }
+    for (const double width : {0.0, 1e-5, 1e-3, 3e-3, 1e-2, 3e-2}) {
+        INFO(width);
+        auto model = truth;
+        auto& p = model.components.back().parameters;
+        p[0].value *= 1.05;
+        p[1].value += 0.05;
+        p[2].value = width;
+        model.baseParameter("Re").value *= 1.001;
+        FitOptions options;
+        options.search = {15, 1e-3};
+        options.fedGradient = true;
+        const auto summary = fit(model, record, sections, options);
+        INFO(summary.message << " after " << summary.iterations << ", width " << p[2].value);
+        CHECK(summary.iterations <= 6);
+        CHECK(summary.chiSquaredPerValue < 0.5055);  // 0.5049 is left of what was added
+    }
+}

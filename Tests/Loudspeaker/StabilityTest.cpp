@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Loudspeaker/EffectBench.h"
 
+#include "Engine/Loudspeaker/DividedStep.h"
 #include "Engine/Loudspeaker/ExponentialStep.h"
+#include "Engine/Loudspeaker/StepDivision.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -119,12 +122,75 @@ TEST_CASE("What is called stable stays near the fine solution, whatever the laws
         several += substeps > 1;
         INFO(n << ": q " << q << ", Ks " << Ks << ", " << substeps << " steps");
         const auto u = tones(0.3, 8.0, static_cast<unsigned>(n));
-        Trajectory coarse, fine;
+        Trajectory coarse, divided, fine;
         REQUIRE(integrate(model, Drive(u, fs, substeps), {}, coarse));
+        REQUIRE(integrate(model, Drive(u, fs, 1), {}, divided));
         REQUIRE(integrate(model, Drive(u, fs, 64), {}, fine));
-        CHECK(farApart(coarse.current, fine.current) < 0.02);
-        CHECK(farApart(coarse.velocity, fine.velocity) < 0.02);
+        for (const auto* run : {&coarse, &divided}) {
+            CHECK(farApart(run->current, fine.current) < 0.02);
+            CHECK(farApart(run->velocity, fine.velocity) < 0.02);
+        }
     }
     CHECK(several > 0);
     CHECK(several < 20);
+}
+
+TEST_CASE("A step is divided where a law is steep, and nowhere else", "[stability]")
+{
+    // a coil that loses nearly all of its inductance at either end, and iron that holds it there
+    const auto model = coilInIron(12.0, 0.5);
+    const StepDivision division(model, 1.0 / fs);
+    const auto range = model.components.back().operatingRange;
+    CHECK(division.power(0.0, 0.0, 0.0) == 0);
+    CHECK(division.power(range.current, 0.0, range.velocity) == 0);
+    for (const double end : {-range.displacement, range.displacement}) {
+        const int most = division.power(0.0, end, 0.0);
+        CHECK(most >= 2);
+        CHECK(division.power(0.0, 0.9 * end, 0.0) == most);
+        CHECK(division.power(0.0, 100.0 * end, 0.0) == most);  // it goes on as at the end
+    }
+    CHECK(division.power(NAN, NAN, NAN) < StepDivision::powers);
+
+    SECTION("hysteresis is fast where the cone is")
+    {
+        auto held = withEffect(makeModel("electrodynamic"), effectNamed("friction"), range);
+        auto& friction = held.components.back();
+        friction.parameters[0].value = 0.1 * friction.parameters[0].prior;
+        friction.parameters[1].value = 2.5e-3 * range.displacement;
+        const StepDivision byFriction(held, 1.0 / fs);
+        const int fast = byFriction.power(0.0, 0.0, range.velocity);
+        CHECK(fast > 0);
+        CHECK(byFriction.power(0.0, 0.0, 0.2 * range.velocity) < fast);
+        CHECK(byFriction.power(0.0, 0.0, -range.velocity) == fast);
+    }
+    SECTION("without laws it is never divided")
+    {
+        const StepDivision linear(makeModel("electrodynamic"), 1.0 / fs);
+        CHECK(linear.power(1e3, 1.0, 1e3) == 0);
+    }
+}
+
+TEST_CASE("The parts of a step follow its input as the step does", "[stability]")
+{
+    // Parts of an exact step are exact, so a law that is hardly there may divide the step or not.
+    auto model = coilInIron(12.0, 0.5);
+    const StepDivision division(model, 1.0 / fs);
+    auto& strength = model.components.back().parameters[1].value;
+    strength *= 1e-9;
+    const StepDivision whole(model, 1.0 / fs);
+    DividedStep one(model, whole), parted(model, division);
+    const auto range = model.components.back().operatingRange;
+    Eigen::VectorXd z;
+    one.state(z);
+    z[1] = range.displacement;  // where the step is divided
+    one.begin(z);
+    parted.begin(z);
+    REQUIRE(division.power(0.0, z[1], 0.0) > whole.power(0.0, z[1], 0.0));
+    const std::array<double, ExponentialStep::terms> u {1.0, -2.0, 0.5, 3.0, -1.0, 0.25, 2.0};
+    const double atStart = one.step(u);
+    CHECK(parted.step(u) == Approx(atStart).epsilon(1e-9));
+    // the laws' own memories are not of the exact part
+    CHECK(parted.current() == Approx(one.current()).epsilon(1e-9));
+    CHECK(parted.displacement() == Approx(one.displacement()).epsilon(1e-9));
+    CHECK(parted.velocity() == Approx(one.velocity()).epsilon(1e-9));
 }

@@ -199,7 +199,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     const Lacking lacking(model, record);
     if (!lacking.isTold())
         return {};
-    const int substeps = stableSubsteps(model, record.sampleRate);
+    const StepDivision division(model, 1.0 / record.sampleRate);
     const auto leadIn = settlingTime(model, record);
     const auto from = startStates(model, record, sections, leadIn, false, 1);
     Motions motions;
@@ -210,7 +210,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         const auto lack = lacking.in(section, fits[n]);
         Trajectory run;
         const auto drive = record.drive(section, leadIn);
-        if (!integrate(model, Drive(drive, record.sampleRate, substeps),
+        if (!integrate(model, Drive(drive, record.sampleRate, 1), division,
                        {drive.size() - section.window, 0, section.periodic}, run, from[n].value))
             return {};
         const auto append = [](std::vector<double>& to, const std::vector<double>& from) {

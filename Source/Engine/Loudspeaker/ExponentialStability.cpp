@@ -53,14 +53,17 @@ bool samePlaces(const OperatingRange& a, const OperatingRange& b)
 
 }  // namespace
 
-std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes(Places places)
+std::vector<ExponentialStep::LawSlope> ExponentialStep::lawSlopes(Places places, std::span<const double> speeds)
 {
     std::vector<const OperatingRange*> ranges;
     for (const auto& law : laws_)
         if (const auto& range = law.component->operatingRange;
             std::none_of(ranges.begin(), ranges.end(), [&](const auto* known) { return samePlaces(*known, range); }))
             ranges.push_back(&range);
-    std::vector<Eigen::MatrixXd> slopes;
+    std::vector<double> velocities;  // shares
+    for (const double speed : speeds)
+        velocities.insert(velocities.end(), {-speed, speed});
+    std::vector<LawSlope> slopes;
     const auto rateAt = [this](const Eigen::VectorXd& y) -> Eigen::VectorXd {
         y_ = y;
         ask(0.0, N_[0].data());
@@ -75,15 +78,15 @@ std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes(Places places)
         little *= 1e-6;
         for (const double angle : {0.0, 0.25, 0.75, 1.0, 1.25, 1.75})  // a sinusoid of the highest frequency
             for (int k = -4; k <= 4; ++k)
-                for (const double v : {-range->velocity, range->velocity})
+                for (const double speed : velocities)
                     for (const bool carries : {false, true}) {
                         y.setZero();
-                        const double place = 0.25 * k,
+                        const double place = 0.25 * k, v = speed * range->velocity,
                                      share = places == Places::all ? 1.0 : std::sqrt(1.0 - place * place);
                         if (share == 0.0 && angle != 0.0)
                             continue;  // all angles are one place
-                        y.head(3) << share * range->current * std::cos(angle * std::numbers::pi),
-                            place * range->displacement, v;
+                        const double current = share * std::cos(angle * std::numbers::pi);
+                        y.head(3) << current * range->current, place * range->displacement, v;
                         y[3] = share * rise * std::sin(angle * std::numbers::pi);
                         if (carries && !carry(y, motions, v, rateAt))
                             continue;
@@ -96,7 +99,7 @@ std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes(Places places)
                             J.col(c) = (rateAt(there) - here) / inward;
                         }
                         if (J.allFinite())
-                            slopes.push_back(std::move(J));
+                            slopes.push_back({range, current, place, speed, std::move(J)});
                     }
     }
     return slopes;
@@ -115,8 +118,8 @@ Eigen::MatrixXd ExponentialStep::among(const Eigen::MatrixXd& J) const
 double ExponentialStep::fastestLaw()
 {
     double fastest = 0.0;
-    for (const auto& J : lawSlopes())
-        fastest = std::max(fastest, spectralRadius(among(J)));
+    for (const auto& place : lawSlopes())
+        fastest = std::max(fastest, spectralRadius(among(place.slope)));
     return fastest;
 }
 
@@ -155,19 +158,20 @@ ExponentialStep::Difference ExponentialStep::differenceNear(const Eigen::MatrixX
     return d;
 }
 
-bool ExponentialStep::isStable(const std::vector<Eigen::MatrixXd>& slopes) const
+bool ExponentialStep::isStable(const Eigen::MatrixXd& slope) const
 {
     constexpr double explicitLimit = 2.0;  // of Runge and Kutta's method of fourth order, 2.8 on either axis
     constexpr double rounding = 1e-4, inexact = 0.05;  // where all decays, and where something truly grows
-    for (const auto& J : slopes) {
-        if (step_ * spectralRadius(among(J)) <= explicitLimit)
-            continue;
-        const auto difference = differenceNear(J);
-        const double grows = std::max(0.0, eigenvalues(difference.rate).real().maxCoeff());
-        if (!(spectralRadius(difference.step) <= (1.0 + (grows > 0.0 ? inexact : rounding)) * std::exp(step_ * grows)))
-            return false;
-    }
-    return true;
+    if (step_ * spectralRadius(among(slope)) <= explicitLimit)
+        return true;
+    const auto difference = differenceNear(slope);
+    const double grows = std::max(0.0, eigenvalues(difference.rate).real().maxCoeff());
+    return spectralRadius(difference.step) <= (1.0 + (grows > 0.0 ? inexact : rounding)) * std::exp(step_ * grows);
+}
+
+bool ExponentialStep::isStable(const std::vector<LawSlope>& places) const
+{
+    return std::all_of(places.begin(), places.end(), [this](const LawSlope& place) { return isStable(place.slope); });
 }
 
 }  // namespace excursion

@@ -29,6 +29,7 @@ namespace excursion {
 class ExponentialStep {
 public:
     static constexpr int terms = 7;  ///< coefficients of an input polynomial
+    static constexpr std::array<double, 1> fullSpeed {1.0};
 
     /// @param model  it need not outlive this
     /// @param h      step, s
@@ -40,6 +41,9 @@ public:
 
     /// Starts at state z; at first it is at rest.
     void begin(const Eigen::VectorXd& z);
+
+    /// Goes on from where a step of the same model and another length is.
+    void takeOver(const ExponentialStep& other) { z_ = other.z_; }
 
     /// While a drive leads in, what is slow (Effect::slow) can stand still.
     void letSlowStand(bool stands) { slowStands_ = stands; }
@@ -60,16 +64,25 @@ public:
     /// Where the laws are looked at: all over the visited range, or where (x/X)^2 + (i/I)^2 <= 1. Beyond that a fit
     /// knows little of a law, as the largest current seldom meets the largest excursion.
     enum class Places { all, likely };
-    /// J = dN/dy there, rates and the laws' memories x y. It depends on no step.
-    std::vector<Eigen::MatrixXd> lawSlopes(Places = Places::all);
+    /// What the laws do about a place.
+    struct LawSlope {
+        const OperatingRange* range;             ///< of a law; it lives as long as this step
+        double current, displacement, velocity;  ///< of the place, shares of the range
+        Eigen::MatrixXd slope;                   ///< J = dN/dy there, rates and the laws' memories x y
+    };
+    /// It depends on no step.
+    /// @param speeds  shares of the velocity's range, both ways
+    std::vector<LawSlope> lawSlopes(Places = Places::all, std::span<const double> speeds = fullSpeed);
 
-    /// Whether the difference between two motions grows no more within a step than the equations let it grow, about
-    /// places all over the visited range. The laws are linear about a place, N = J y, and the step is a matrix there,
+    /// Whether the difference between two motions grows no more within a step than the equations let it grow, about a
+    /// place. The laws are linear about a place, N = J y, and the step is a matrix there,
     /// whose eigenvalues tell. What loops in the iron take from the coil is stiff and exact, but for the share
     /// by which a law changes the inductance: if it changes from L0 to L, a long step multiplies what it was by
     /// 2 q^4 - q^2, q = L0/L - 1, no matter how fast the loops are.
-    /// @param slopes  lawSlopes()
-    bool isStable(const std::vector<Eigen::MatrixXd>& slopes) const;
+    /// @param slope  of lawSlopes()
+    bool isStable(const Eigen::MatrixXd& slope) const;
+    /// About each of these places.
+    bool isStable(const std::vector<LawSlope>&) const;
 
 private:
     friend class ExponentialAdams;

@@ -5,6 +5,7 @@
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/KeptSlopes.h"
 #include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/SearchCoordinates.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Validity.h"
 
@@ -21,9 +22,16 @@ namespace {
 /// What the model leaves of the sections to fit, with normal equations of the active parameters when asked for.
 using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::Index>& active, bool gradient)>;
 
-/// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of
-/// relaxations that has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of
-/// an effect that is not at work yet nothing can be said: its shapes are kept.
+/// How much the record says of a parameter, in units of what was plausible beforehand.
+/// @param N  of it alone
+double toldOf(const Parameter& p, double N)
+{
+    const double even = p.even ? std::max(1.0, 0.5 * p.prior / std::abs(p.value)) : 1.0;  // its square is searched
+    return N * std::pow(p.prior * even, 2);
+}
+
+/// The free parameters but for shapes of which the record says no more than was plausible beforehand: their wild steps
+/// would hold up the others. Of an effect that is not at work yet nothing can be said: its shapes are kept.
 /// @param fits  of the model, when they had to be known and no parameter is left out; else none
 std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
 {
@@ -47,18 +55,26 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
                 sum.add(channel);
     if (sum.N.size() == 0)
         return active;
-    std::vector<Eigen::Index> kept;
     constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
     const double variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+    std::vector<Eigen::Index> kept;
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto k = static_cast<Eigen::Index>(j);
-        const double prior = all[static_cast<std::size_t>(active[j])]->prior;
-        if (!isShape(active[j]) || sum.N(k, k) * prior * prior > fewTimes * variance)
+        if (!isShape(active[j]) || toldOf(*all[static_cast<std::size_t>(active[j])], sum.N(k, k)) > fewTimes * variance)
             kept.push_back(active[j]);
     }
     if (kept.size() < active.size())
         fits.clear();
     return kept;
+}
+
+SearchCoordinates coordinatesOf(Model& model, const std::vector<Eigen::Index>& active)
+{
+    const auto all = parametersOf(model);
+    std::vector<Parameter*> own;
+    for (const auto k : active)
+        own.push_back(all[static_cast<std::size_t>(k)]);
+    return SearchCoordinates(std::move(own));
 }
 
 /// The search of the model's parameters for the least error.
@@ -68,24 +84,16 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
 {
     FitSummary summary;
     for (auto* parameter : parametersOf(model))
-        if (parameter->free)
+        if (parameter->free) {
             parameter->value = std::clamp(parameter->value, parameter->lower, parameter->upper);
+            leaveZero(*parameter);
+        }
     std::vector<SectionFit> atStart;
     const auto active = telling(model, errorOf, atStart);
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
-    Eigen::VectorXd theta(P), lower(P), upper(P);
-    for (Eigen::Index k = 0; k < P; ++k) {
-        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
-        theta[k] = p.value;
-        // Mass, inductance and their like stay away from zero, where the equations of motion are singular.
-        lower[k] = p.lower == 0.0 && !p.strength ? 1e-3 * p.value : p.lower;
-        upper[k] = p.upper;
-    }
-    const auto place = [&](const Eigen::VectorXd& at) {
-        for (Eigen::Index k = 0; k < P; ++k)
-            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
-    };
+    auto coordinates = coordinatesOf(model, active);
+    Eigen::VectorXd theta = coordinates.now(), slopesOfKept;
     std::vector<SectionFit> tried;  // where slopes were not asked for, last
     KeptSlopes slopes(record, sections);
     NormalEquations last;                                     // at the last place with slopes
@@ -93,7 +101,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        place(at);
+        coordinates.place(at);
         // asked for there first
         auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
         auto total = sumOf(fits);
@@ -105,13 +113,15 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
+        coordinates.convert(sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
             last = sum;
             noiseAtLast = onlyNoise;
         }
-        if (corrected && gradient)
+        if (corrected && gradient) {
             slopes.keep(std::move(fits));
-        else if (corrected)
+            slopesOfKept = coordinates.slopes();
+        } else if (corrected)
             tried = std::move(fits);
         if (sum.cost < lowest) {  // the search takes every such step
             lowest = sum.cost;
@@ -120,23 +130,27 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         return true;
     };
     const auto chord = [&] {
-        NormalEquations pull;
-        pull.g = slopes.gradientAt(tried);
-        if (pull.g.size() == 0)
-            return pull.g;
-        pull.N = Eigen::MatrixXd::Zero(pull.g.size(), pull.g.size());
-        addPrior(model, active, pull, variance);  // the model stands where it was tried
-        return pull.g;
+        Eigen::VectorXd pull = slopes.gradientAt(tried);
+        if (pull.size() == 0)
+            return pull;
+        NormalEquations prior;
+        prior.g = Eigen::VectorXd::Zero(P);
+        prior.N = Eigen::MatrixXd::Zero(P, P);
+        addPrior(model, active, prior, variance);  // the model stands where it was tried
+        coordinates.convert(prior, variance);
+        return Eigen::VectorXd(pull.cwiseProduct(slopesOfKept) + prior.g);
     };
-    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress,
+    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, coordinates.lower(), coordinates.upper(),
+                                                    options.search, progress,
                                                     corrected ? ChordGradient(chord) : ChordGradient());
-    place(theta);
+    coordinates.place(theta);
     if (!summary.usable())
         return summary;
     if (summary.termination == Termination::noSlopes)
         summary.onlyNoise = noiseAtLast;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
-    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
+    Eigen::MatrixXd covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
+    covariance = coordinates.slopes().asDiagonal() * covariance * coordinates.slopes().asDiagonal();
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {
@@ -256,9 +270,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         }
         return summary;
     }
-    run.substeps = std::max(stableSubsteps(model, record.sampleRate),
-                            options.substeps > 0 ? options.substeps
-                                                 : substepsFor(model, record, options.simulationTolerance));
+    run.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance);
     if (options.exactGradient)
         run.gradientSubsteps = run.substeps;
     const bool slopesFed = options.fedGradient && hasPeriods(record);

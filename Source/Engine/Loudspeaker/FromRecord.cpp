@@ -126,12 +126,12 @@ OperatingRange visitedRange(const Model& model, const Record& record, int degree
             }
         }
     if (x == 0.0 || (i == 0.0 && model.electrical())) {
-        const int substeps = stableSubsteps(model, record.sampleRate);
+        const StepDivision division(model, 1.0 / record.sampleRate);
         double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
         for (const auto& section : record.sections) {
             Trajectory run;
             const auto drive = record.drive(section);
-            if (!integrate(model, Drive(drive, record.sampleRate, substeps), {drive.size() - section.window}, run))
+            if (!integrate(model, Drive(drive, record.sampleRate, 1), division, {drive.size() - section.window}, run))
                 continue;
             simulatedX = std::max(simulatedX, peakOf(run.displacement));
             simulatedV = std::max(simulatedV, peakOf(run.velocity));

@@ -28,14 +28,15 @@ bool settles(const Component& component)
 class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
-               const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, std::size_t leadIn,
-               std::size_t ahead, const StartState& from)
+               const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const StepDivision& division,
+               std::size_t leadIn, std::size_t ahead, const StartState& from)
         : model_(model),
           record_(record),
           section_(section),
           residual_(record, section),
           active_(active),
           options_(options),
+          division_(division),
           from_(from)
     {
         const auto drive = record.drive(section, leadIn);
@@ -54,7 +55,7 @@ public:
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
         Trajectory trajectory;
-        fit.finite = integrate(model_, *drive_, window_, trajectory, from_.value);
+        fit.finite = integrate(model_, *drive_, division_, window_, trajectory, from_.value);
         if (!fit.finite)
             return fit;
         std::vector<Eigen::VectorXd> residual;
@@ -124,6 +125,7 @@ private:
     Residual residual_;
     const std::vector<Eigen::Index>& active_;
     const OutputErrorOptions& options_;
+    const StepDivision& division_;
     const StartState& from_;
     std::optional<Drive> drive_, gradientDrive_;
     Window window_;
@@ -167,15 +169,17 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     const auto leadIn = settlingTime(model, record);
     const int stable = stableSubsteps(model, record.sampleRate);
     OutputErrorOptions options = wanted;
-    options.substeps = std::max(wanted.substeps, stable);
-    options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
+    options.substeps = std::max(wanted.substeps, 1);
+    options.gradientSubsteps = std::max(wanted.gradientSubsteps, stable);
+    const StepDivision division(model, 1.0 / (record.sampleRate * options.substeps));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty(),
                                   options.threads);
     const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
-        fits[n] =
-            SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, ahead, from[n]).run();
+        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, division, leadIn, ahead,
+                             from[n])
+                      .run();
         return fits[n].finite;
     });
     return fits;

@@ -27,8 +27,8 @@ struct OutputErrorOptions {
     bool gradient = true;  ///< fill N and g
     bool spectra = false;  ///< fill predicted
     bool slopes = false;   ///< fill slopes
-    int substeps = 1;      ///< of the simulation, at least; raised to the smallest stable number
-    /// of the sensitivities: they may be coarser, as they only steer the search; 0: the smallest number
+    int substeps = 1;      ///< of the simulation, per sample, at least 1; each in as many parts as its place asks for
+    /// of the sensitivities: they may be coarser, as they only steer the search; raised to the smallest stable number
     int gradientSubsteps = 0;
     /// for quickError(): residuals of the simulation, slopes of fed laws
     bool played = false;

@@ -61,8 +61,7 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
 
     const auto tolerances = tolerancesOf(model, options);
     SimulationSummary summary;
-    const int stable = stableSubsteps(model, sampleRate);
-    summary.substeps = stable;
+    summary.substeps = 1;
     Trajectory coarse, fine;
     bool have = integrate(model, Drive(part, sampleRate, summary.substeps), {}, coarse), ever = have;
     while (summary.substeps <= options.maximumSubsteps) {
@@ -84,7 +83,7 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
         ever = ever || refined;
     }
     // What runs away at every step does so by a law, and no shorter steps help.
-    summary.substeps = ever ? std::min(summary.substeps, options.maximumSubsteps) : stable;
+    summary.substeps = ever ? std::min(summary.substeps, options.maximumSubsteps) : 1;
     return summary;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Trajectory.h"
 
-#include "Engine/Loudspeaker/ExponentialStep.h"
+#include "Engine/Loudspeaker/DividedStep.h"
 #include "Engine/Loudspeaker/Plausible.h"
 #include "Engine/Loudspeaker/Radiator.h"
 #include "Engine/Loudspeaker/SensitivityStep.h"
@@ -26,8 +26,14 @@ const std::vector<double>& Trajectory::operator[](Trace trace) const
 bool integrate(const Model& model, const Drive& drive, const Window& window, Trajectory& out,
                const Eigen::VectorXd& start)
 {
+    return integrate(model, drive, StepDivision(model, drive.step()), window, out, start);
+}
+
+bool integrate(const Model& model, const Drive& drive, const StepDivision& division, const Window& window,
+               Trajectory& out, const Eigen::VectorXd& start)
+{
     const auto first = window.begin;
-    ExponentialStep motion(model, drive.step());
+    DividedStep motion(model, division);
     Radiator radiator(model);
     const Plausible plausible(model);
     if (start.size() > 0)

@@ -4,6 +4,7 @@
 #include "Engine/Loudspeaker/Drive.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Loudspeaker/StartState.h"
+#include "Engine/Loudspeaker/StepDivision.h"
 
 #include <Eigen/Core>
 
@@ -34,9 +35,12 @@ struct Window {
     bool slowStands = false;  ///< what is slow stands still until then (ExponentialStep::letSlowStand)
 };
 
-/// Integrates the model from rest, or from another state (ExponentialStep).
+/// Integrates the model from rest, or from another state (DividedStep).
+/// @param division  of the drive's steps
 /// @param start  state z of Dynamics at the drive's first sample; empty: rest
 /// @returns false if the state is no longer finite or in a plausible range; the trajectory is then invalid
+bool integrate(const Model&, const Drive&, const StepDivision& division, const Window&, Trajectory& out,
+               const Eigen::VectorXd& start = {});
 bool integrate(const Model&, const Drive&, const Window&, Trajectory& out, const Eigen::VectorXd& start = {});
 
 /// Derivatives of the trajectory by parameters of the model (SensitivityStep).
@@ -47,7 +51,7 @@ bool integrate(const Model&, const Drive&, const Window&, Trajectory& out, const
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, const Window&,
                    const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
-/// The smallest number of steps per sample, at most 64, for which both of the above are stable
+/// The smallest number of steps per sample, at most 64, for which differentiate() is stable all over the visited range
 /// (ExponentialStep::isStable).
 int stableSubsteps(const Model&, double sampleRate);
 

@@ -54,7 +54,7 @@ public:
         width.name = "width";
         width.unit = "decades";
         width.value = 2.0;
-        // the sign says nothing: a search that passes through the single relaxation at 0 must not hit a wall
+        width.even = true;  // no bound at 0: a search that passes through the single relaxation must not hit a wall
         width.prior = 3.0;
         tilt.name = "tilt";
         tilt.unit = "1";

@@ -46,11 +46,15 @@ public:
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "H");
-        for (int n = 1; n <= places; ++n)
+        for (int n = 1; n <= places; ++n) {
+            const double prior = curve::plausible(n, plausiblePlace);
             result.push_back({.name = "q" + std::to_string(n),
                               .unit = "1",
+                              .lower = -mostPlace * prior,
+                              .upper = mostPlace * prior,
                               .joint = true,
-                              .prior = curve::plausible(n, plausiblePlace)});
+                              .prior = prior});
+        }
         return result;
     }
     int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + places + 1; }
@@ -75,7 +79,8 @@ public:
 
 private:
     static constexpr int places = 10;
-    static constexpr double plausiblePlace = 0.5;
+    // While another law is missing, g would do its work with a small c: it is kept from what no iron does.
+    static constexpr double plausiblePlace = 0.5, mostPlace = 3.0;
 
     template <class T>
     struct Flux {
