@@ -125,3 +125,21 @@ TEST_CASE("Random modes of the cone come out at the noise", "[.study]")
         CHECK(left(found(targets), targets) < 1.1);
     }
 }
+
+TEST_CASE("A gain of a mode that the take hardly tells makes no cone implausible", "[breakup]")
+{
+    auto model = found(measured({{6100.0, 30.0, 0.5}}, 0.003, 1));
+    REQUIRE(isPlausible(model, 1));
+    auto& own = model.components[1].parameters;
+    const auto mode = std::find_if(own.begin(), own.end(),
+                                   [](const Parameter& p) { return p.name[0] == 'g' && p.value != 0.0; });
+    REQUIRE(mode != own.end());
+    auto& atSpot = *(mode + 1);
+    REQUIRE(atSpot.name[0] == 'h');
+    atSpot.value = 3.2;
+    for (const auto& [error, plausible] : {std::pair {0.05, false}, {0.5, true}, {NAN, false}}) {
+        INFO(error);
+        atSpot.standardError = error;
+        CHECK(isPlausible(model, 1) == plausible);
+    }
+}

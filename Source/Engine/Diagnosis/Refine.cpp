@@ -42,7 +42,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
-        LeastSquaresOptions alongTheFloor {.maximumIterations = 6, .costTolerance = 1e-5, .firstDamping = 1e-4};
+        LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-6};
         const bool straight = !canCorrect(model, record, sections);
         if (straight)  // uncorrected steps stop in a bend of the valley unless the damping starts low
             alongTheFloor.firstDamping = 1e-7;
