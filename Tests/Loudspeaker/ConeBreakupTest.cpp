@@ -142,4 +142,7 @@ TEST_CASE("A gain of a mode that the take hardly tells makes no cone implausible
         atSpot.standardError = error;
         CHECK(isPlausible(model, 1) == plausible);
     }
+    atSpot.value = 30.0;
+    atSpot.standardError = 20.0;
+    CHECK_FALSE(isPlausible(model, 1));
 }

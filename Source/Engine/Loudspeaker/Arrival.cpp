@@ -30,42 +30,52 @@ std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::siz
     return fine;
 }
 
-/// Lagrange's polynomial through eight of the finer values, periodic.
-double between(const std::vector<double>& fine, double sample, int finer)
+/// Lagrange's polynomial through eight of the finer values: its weights at a place.
+/// @param sample  the place, samples
+Arrival::Taps tapsAt(double sample, int finer)
 {
-    constexpr int points = 8;
+    constexpr auto points = Arrival::points;
     static constexpr std::array<double, points> inverse = [] {  // 1/prod (k - j)
         std::array<double, points> result {};
-        for (int k = 0; k < points; ++k) {
+        for (std::size_t k = 0; k < points; ++k) {
             double product = 1.0;
-            for (int j = 0; j < points; ++j)
+            for (std::size_t j = 0; j < points; ++j)
                 if (j != k)
-                    product *= k - j;
-            result[static_cast<std::size_t>(k)] = 1.0 / product;
+                    product *= static_cast<double>(k) - static_cast<double>(j);
+            result[k] = 1.0 / product;
         }
         return result;
     }();
-    const auto length = static_cast<std::ptrdiff_t>(fine.size());
     constexpr int before = points / 2 - 1;  // of the points that lie on the left
     const double place = sample * finer, floor = std::floor(place), fraction = place - floor + before;
-    const auto first = static_cast<std::ptrdiff_t>(floor) - before;
-    std::array<double, points> across;  // only where the period begins and ends
-    const double* values = fine.data() + first;
-    if (first < 0 || first + points > length) {
-        for (int k = 0; k < points; ++k)
-            across[static_cast<std::size_t>(k)] =
-                fine[static_cast<std::size_t>(((first + k) % length + length) % length)];
-        values = across.data();
-    }
+    Arrival::Taps taps {static_cast<std::ptrdiff_t>(floor) - before, {}};
     std::array<double, points> above;  // prod (fraction - j) over j > k
     above[points - 1] = 1.0;
     for (std::size_t k = points - 1; k > 0; --k)
         above[k - 1] = above[k] * (fraction - static_cast<double>(k));
-    double sum = 0.0, below = 1.0;
+    double below = 1.0;
     for (std::size_t k = 0; k < points; ++k) {
-        sum += inverse[k] * below * above[k] * values[k];
+        taps.weight[k] = inverse[k] * below * above[k];
         below *= fraction - static_cast<double>(k);
     }
+    return taps;
+}
+
+/// What these weights make of a periodic record.
+double weighted(const std::vector<double>& fine, const Arrival::Taps& taps)
+{
+    constexpr auto points = static_cast<std::ptrdiff_t>(Arrival::points);
+    const auto length = static_cast<std::ptrdiff_t>(fine.size());
+    double sum = 0.0;
+    if (taps.first < 0 || taps.first + points > length) {  // only where the period begins and ends
+        for (std::ptrdiff_t k = 0; k < points; ++k)
+            sum += taps.weight[static_cast<std::size_t>(k)]
+                   * fine[static_cast<std::size_t>(((taps.first + k) % length + length) % length)];
+        return sum;
+    }
+    const double* values = fine.data() + taps.first;
+    for (std::size_t k = 0; k < Arrival::points; ++k)
+        sum += taps.weight[k] * values[k];
     return sum;
 }
 
@@ -112,33 +122,39 @@ Arrival::Arrival(std::span<const double> lateness, double sampleRate)
             auto nearest = static_cast<std::ptrdiff_t>(finer * s) % length;
             nearest += nearest < 0 ? length : 0;
             const auto from = static_cast<std::size_t>(std::min(nearest, length - 2));
-            const double change = (s + between(late, s, finer) - t) / (1.0 + finer * (late[from + 1] - late[from]));
+            const double change = (s + weighted(late, tapsAt(s, finer)) - t)
+                                  / (1.0 + finer * (late[from + 1] - late[from]));
             s -= change;
             if (!(std::abs(change) > 1e-9))
                 break;
         }
         left_[n] = s;
     }
+    rough_.reserve(N);
+    for (const double s : left_)
+        rough_.push_back(tapsAt(s, roughly));
 }
 
 std::vector<double> Arrival::heard(std::span<const double> samples) const
 {
     if (left_.empty())
         return {samples.begin(), samples.end()};
-    return read(fft(samples), samples.size(), finely);
+    const std::size_t N = samples.size();
+    const auto fine = refined(fft(samples), N, finely);
+    std::vector<double> result(N);
+    for (std::size_t n = 0; n < N; ++n)
+        result[n] = weighted(fine, tapsAt(left_[n], finely));
+    return result;
 }
 
 std::vector<double> Arrival::heardRoughly(std::vector<std::complex<double>> spectrum, std::size_t N) const
 {
-    return left_.empty() ? inverseFft(spectrum, N) : read(std::move(spectrum), N, roughly);
-}
-
-std::vector<double> Arrival::read(std::vector<std::complex<double>> spectrum, std::size_t N, int finer) const
-{
-    const auto fine = refined(std::move(spectrum), N, finer);
+    if (left_.empty())
+        return inverseFft(spectrum, N);
+    const auto fine = refined(std::move(spectrum), N, roughly);
     std::vector<double> result(N);
     for (std::size_t n = 0; n < N; ++n)
-        result[n] = between(fine, left_[n], finer);
+        result[n] = weighted(fine, rough_[n]);
     return result;
 }
 

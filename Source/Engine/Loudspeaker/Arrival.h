@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <span>
@@ -31,13 +32,20 @@ public:
     /// A record of the same period as it is heard: x(s(t)). Unchanged if the lateness is zero throughout.
     std::vector<double> heard(std::span<const double> samples) const;
 
-    /// The same for a record of N samples with this spectrum, in a third of the time, within half a percent.
+    /// The same for a record of N samples with this spectrum, in a fraction of the time, within half a
+    /// percent.
     std::vector<double> heardRoughly(std::vector<std::complex<double>> spectrum, std::size_t N) const;
 
-private:
-    std::vector<double> read(std::vector<std::complex<double>> spectrum, std::size_t N, int finer) const;
+    /// Eight neighbouring values of a finer record, and what they weigh at a place between them.
+    static constexpr std::size_t points = 8;
+    struct Taps {
+        std::ptrdiff_t first;
+        std::array<double, points> weight;
+    };
 
+private:
     std::vector<double> left_;  ///< samples; empty if there is no lateness
+    std::vector<Taps> rough_;   ///< for heardRoughly(), which reads many records at the same places
 };
 
 }  // namespace excursion

@@ -19,8 +19,8 @@ void shiftByOne(Polynomial& p)
 
 }  // namespace
 
-DividedStep::DividedStep(const Model& model, const StepDivision& division)
-    : model_(model), division_(division), now_(&steps_[0].emplace(model, division.step()))
+DividedStep::DividedStep(const Model& model, const StepDivision& division, double h)
+    : model_(model), division_(division), step_(h), now_(&steps_[0].emplace(model, h))
 {
 }
 
@@ -40,7 +40,7 @@ void DividedStep::goOnWith(int power)
 {
     auto& next = steps_[static_cast<std::size_t>(power)];
     if (!next)
-        next.emplace(model_, std::ldexp(division_.step(), -power));
+        next.emplace(model_, std::ldexp(step_, -power));
     next->letSlowStand(slowStands_);
     next->takeOver(*now_);
     now_ = &*next;

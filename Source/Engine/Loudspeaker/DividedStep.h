@@ -18,7 +18,8 @@ class DividedStep {
 public:
     /// @param model     it must outlive this
     /// @param division  of the same model; it must outlive this
-    DividedStep(const Model& model, const StepDivision& division);
+    /// @param h         whole step, s
+    DividedStep(const Model& model, const StepDivision& division, double h);
 
     /// See ExponentialStep.
     void begin(const Eigen::VectorXd& z);
@@ -39,6 +40,7 @@ private:
 
     const Model& model_;
     const StepDivision& division_;
+    double step_;                                                             ///< s
     std::array<std::optional<ExponentialStep>, StepDivision::powers> steps_;  // those that were asked for
     int power_ = 0;
     ExponentialStep* now_;

@@ -90,8 +90,8 @@ struct Parameter {
     bool relaxed = false;
     /// has a meaning only together with another law of the same base parameter: zero and not free without one
     bool joint = false;
-    bool heard = false;     ///< only the sound shows it: not free if none was measured
-    /// its sign says nothing, so that its slope vanishes at zero
+    bool heard = false;  ///< only the sound shows it: not free if none was measured
+    /// its sign says nothing, so that its slope vanishes at zero (SearchCoordinates); it has a prior and no bounds
     bool even = false;
     bool strength = false;  ///< if all strengths of an effect are zero, it is absent
     /// prior: plausible standard deviation about zero

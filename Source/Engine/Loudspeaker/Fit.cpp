@@ -96,7 +96,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     Eigen::VectorXd theta = coordinates.now(), slopesOfKept;
     std::vector<SectionFit> tried;  // where slopes were not asked for, last
     KeptSlopes slopes(record, sections);
-    NormalEquations last;                                     // at the last place with slopes
+    NormalEquations last;                                     // at the last place with slopes, by parameters
     bool noiseAtLast = false;                                 // there
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
@@ -113,11 +113,11 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
-        coordinates.convert(sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
             last = sum;
             noiseAtLast = onlyNoise;
         }
+        coordinates.convert(sum, variance);
         if (corrected && gradient) {
             slopes.keep(std::move(fits));
             slopesOfKept = coordinates.slopes();
@@ -149,8 +149,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     if (summary.termination == Termination::noSlopes)
         summary.onlyNoise = noiseAtLast;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
-    Eigen::MatrixXd covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
-    covariance = coordinates.slopes().asDiagonal() * covariance * coordinates.slopes().asDiagonal();
+    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {

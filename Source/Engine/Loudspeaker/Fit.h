@@ -16,7 +16,8 @@ struct FitOptions {
     double simulationTolerance = 0.0;
     int substeps = 0;  ///< integration steps per sample; 0: chosen from the tolerance
     unsigned threads = 2;
-    /// sensitivities as fine as the simulation: slower iterations, but fewer if some directions are poorly determined
+    /// sensitivities with as many steps a sample as the simulation: slower iterations, but fewer if some directions are
+    /// poorly determined
     bool exactGradient = false;
     /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
     /// few more are needed

@@ -119,7 +119,8 @@ std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parame
         if (items[k].at("unit").text() != p.unit)
             items[k].at("unit").refuse("\"" + p.unit + "\"");
         p.value = items[k].at("value").number();
-        if (p.value < p.lower || p.value > p.upper)
+        // Older fits left joint parameters further out than a fit takes them; the next one brings them back.
+        if (!p.joint && (p.value < p.lower || p.value > p.upper))
             p.value = items[k].at("value").numberWithin(p.lower, p.upper);
         p.standardError = items[k].at("standardError").numberOrNaN();
         p.free = items[k].at("free").flag();

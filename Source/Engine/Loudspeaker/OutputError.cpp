@@ -39,11 +39,9 @@ public:
           division_(division),
           from_(from)
     {
-        const auto drive = record.drive(section, leadIn);
-        drive_.emplace(drive, record.sampleRate, options.substeps);
-        if (options.gradient && options.gradientSubsteps != options.substeps)
-            gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
-        window_.begin = drive.size() - section.window;
+        input_ = record.drive(section, leadIn);
+        drive_.emplace(input_, record.sampleRate, options.substeps);
+        window_.begin = input_.size() - section.window;
         window_.slowStands = section.periodic;
         window_.ahead = ahead;
     }
@@ -69,7 +67,11 @@ public:
         }
         if (options_.gradient && columns > 0) {
             std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(residual_.rows(), columns));
-            fit.finite = sensitivities(sensors, J);
+            fit.finite = sensitivities(sensors, J, options_.gradientSubsteps);
+            if (!fit.finite) {  // it has been where few models go
+                const int finer = stableSubsteps(model_, record_.sampleRate, ExponentialStep::Places::all);
+                fit.finite = finer > options_.gradientSubsteps && sensitivities(sensors, J, finer);
+            }
             if (!fit.finite)
                 return fit;
             for (std::size_t c = 0; c < channels; ++c) {
@@ -84,8 +86,10 @@ public:
     }
 
 private:
-    bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
+    bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J, int substeps) const
     {
+        const bool same = substeps == options_.substeps;
+        const auto own = same ? std::optional<Drive>() : Drive(input_, record_.sampleRate, substeps);
         std::vector<Trace> traces;  // of all channels, each once
         for (const auto quantity : record_.channels)
             for (const auto trace : sensors.tracesOf(quantity))
@@ -97,8 +101,7 @@ private:
         for (std::size_t block = 0; block < active_.size(); block += together) {
             const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
             std::vector<Eigen::MatrixXd> slopes;
-            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, window_, traces, from_,
-                               slopes))
+            if (!differentiate(model_, parameters, same ? *drive_ : *own, window_, traces, from_, slopes))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto made = sensors.tracesOf(record_.channels[c]);
@@ -127,7 +130,8 @@ private:
     const OutputErrorOptions& options_;
     const StepDivision& division_;
     const StartState& from_;
-    std::optional<Drive> drive_, gradientDrive_;
+    std::vector<double> input_;
+    std::optional<Drive> drive_;
     Window window_;
 };
 
@@ -167,13 +171,13 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
                                     const Progress& progress)
 {
     const auto leadIn = settlingTime(model, record);
-    const int stable = stableSubsteps(model, record.sampleRate);
+    const bool gradient = wanted.gradient && !active.empty();
     OutputErrorOptions options = wanted;
     options.substeps = std::max(wanted.substeps, 1);
-    options.gradientSubsteps = std::max(wanted.gradientSubsteps, stable);
-    const StepDivision division(model, 1.0 / (record.sampleRate * options.substeps));
-    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty(),
-                                  options.threads);
+    if (gradient)
+        options.gradientSubsteps = std::max(wanted.gradientSubsteps, stableSubsteps(model, record.sampleRate));
+    const StepDivision division(model, record.sampleRate);
+    const auto from = startStates(model, record, sections, leadIn, gradient, options.threads);
     const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {

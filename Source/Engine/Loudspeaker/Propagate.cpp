@@ -40,7 +40,7 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
         const double step = stepOf(p, known ? deviation : std::numeric_limits<double>::infinity());
         auto at = theta;
         const auto numbersAt = [&](double value) {
-            at[k] = std::clamp(value, p.lower, p.upper);
+            at[k] = p.value < p.lower || p.value > p.upper ? value : std::clamp(value, p.lower, p.upper);
             setParameterVector(moved, at);
             return std::pair {numbers(moved), at[k]};
         };

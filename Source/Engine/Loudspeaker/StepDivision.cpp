@@ -40,10 +40,10 @@ int StepDivision::cellOfVelocity(double share)
     return share < 0.0 ? level : speeds + level;
 }
 
-StepDivision::StepDivision(const Model& model, double step) : step_(step)
+StepDivision::StepDivision(const Model& model, double sampleRate)
 {
     constexpr std::array<double, speeds> shares {0.25, 0.5, 1.0};
-    Parts parts(model, step);
+    Parts parts(model, 1.0 / sampleRate);
     for (const auto& slope : parts[0].lawSlopes(ExponentialStep::Places::all, shares)) {
         auto table = std::find_if(tables_.begin(), tables_.end(), [&](const Table& known) {
             return known.displacement == slope.range->displacement && known.velocity == slope.range->velocity

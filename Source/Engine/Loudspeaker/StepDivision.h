@@ -8,17 +8,15 @@
 
 namespace excursion {
 
-/// How many parts the step of a simulation has, by the place where it starts: as few as are stable there
+/// How many parts a step of one sample needs, by the place where it starts: as few as are stable there
 /// (ExponentialStep::isStable). A law is steep at the ends of the excursion or at full speed only, and a cone is there
-/// for little of its time.
+/// for little of its time. Where a simulation takes several steps a sample each has as many parts, so that its accuracy
+/// grows everywhere.
 class StepDivision {
 public:
     static constexpr int powers = 7;  ///< 1, 2, 4 .. 64 parts
 
-    /// @param step  s
-    StepDivision(const Model&, double step);
-
-    double step() const { return step_; }  ///< s
+    StepDivision(const Model&, double sampleRate);
 
     /// The power of two of the parts.
     /// @param i  current, A
@@ -27,8 +25,8 @@ public:
     int power(double i, double x, double v) const;
 
 private:
-    // Cells between the places where the laws are looked at: a quarter of the range in x; the middle and either end in
-    // i; thrice half the speed in either direction.
+    // Cells between the places where the laws are looked at: quarters of the range in x; the middle and either end in
+    // i; up to a quarter, a half and all of the speed, in either direction.
     static constexpr int cellsX = 8, cellsI = 3, speeds = 3, cellsV = 2 * speeds;
 
     /// The cells of a range that laws share.
@@ -39,7 +37,6 @@ private:
     static int cellOfVelocity(double share);
     static int cellOf(int x, int i, int v) { return (x * cellsI + i) * cellsV + v; }
 
-    double step_;
     std::vector<Table> tables_;
 };
 

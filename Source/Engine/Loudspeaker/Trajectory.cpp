@@ -26,14 +26,14 @@ const std::vector<double>& Trajectory::operator[](Trace trace) const
 bool integrate(const Model& model, const Drive& drive, const Window& window, Trajectory& out,
                const Eigen::VectorXd& start)
 {
-    return integrate(model, drive, StepDivision(model, drive.step()), window, out, start);
+    return integrate(model, drive, StepDivision(model, 1.0 / (drive.step() * drive.substeps())), window, out, start);
 }
 
 bool integrate(const Model& model, const Drive& drive, const StepDivision& division, const Window& window,
                Trajectory& out, const Eigen::VectorXd& start)
 {
     const auto first = window.begin;
-    DividedStep motion(model, division);
+    DividedStep motion(model, division, drive.step());
     Radiator radiator(model);
     const Plausible plausible(model);
     if (start.size() > 0)
@@ -139,9 +139,10 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
     return true;
 }
 
-int stableSubsteps(const Model& model, double sampleRate)
+int stableSubsteps(const Model& model, double sampleRate, ExponentialStep::Places places)
 {
-    const auto slopes = ExponentialStep(model, 1.0 / sampleRate).lawSlopes(ExponentialStep::Places::likely);
+    ExponentialStep whole(model, 1.0 / sampleRate);
+    const auto slopes = whole.lawSlopes(places);
     int substeps = 1;
     while (substeps < mostSubsteps && !ExponentialStep(model, 1.0 / (sampleRate * substeps)).isStable(slopes))
         ++substeps;

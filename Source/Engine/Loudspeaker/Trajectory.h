@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Drive.h"
+#include "Engine/Loudspeaker/ExponentialStep.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Loudspeaker/StartState.h"
 #include "Engine/Loudspeaker/StepDivision.h"
@@ -36,7 +37,7 @@ struct Window {
 };
 
 /// Integrates the model from rest, or from another state (DividedStep).
-/// @param division  of the drive's steps
+/// @param division  at the drive's rate of samples
 /// @param start  state z of Dynamics at the drive's first sample; empty: rest
 /// @returns false if the state is no longer finite or in a plausible range; the trajectory is then invalid
 bool integrate(const Model&, const Drive&, const StepDivision& division, const Window&, Trajectory& out,
@@ -51,8 +52,8 @@ bool integrate(const Model&, const Drive&, const Window&, Trajectory& out, const
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, const Window&,
                    const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
-/// The smallest number of steps per sample, at most 64, for which differentiate() is stable all over the visited range
+/// The smallest number of steps per sample, at most 64, for which differentiate() is stable at all these places
 /// (ExponentialStep::isStable).
-int stableSubsteps(const Model&, double sampleRate);
+int stableSubsteps(const Model&, double sampleRate, ExponentialStep::Places = ExponentialStep::Places::likely);
 
 }  // namespace excursion

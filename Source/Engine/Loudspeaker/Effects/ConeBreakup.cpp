@@ -75,17 +75,20 @@ public:
     {
         constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 1.5;
         const double resonance = resonanceOf(base);
-        // Where the take hardly tells a gain it may come out as large as its error.
-        const auto tooLarge = [](const Parameter& gain) {
-            const double error = std::isfinite(gain.standardError) ? gain.standardError : 0.0;
-            return std::abs(gain.value) - 2.0 * error > mostGain;
+        // A laser hardly tells what a mode does at its spot: the gain may come out as large as its error.
+        const auto tooLargeAtSpot = [](const Parameter& gain) {
+            constexpr double most = 4.0 * mostGain;
+            const double size = std::abs(gain.value),
+                         error = std::isfinite(gain.standardError) ? gain.standardError : 0.0;
+            return size > most || size - 2.0 * error > mostGain;
         };
         for (int k = 0; k < modes; ++k) {
             const auto* p = own.data() + each * k;
             const double frequency = e.highFrequency * std::exp2(octaveOf(k) + p[0].value),
                          quality = middlingQuality * std::exp2(p[1].value);
             if ((p[2].value != 0.0 || p[3].value != 0.0)
-                && (frequency < lowest * resonance || quality < leastQuality || tooLarge(p[2]) || tooLarge(p[3])))
+                && (frequency < lowest * resonance || quality < leastQuality || std::abs(p[2].value) > mostGain
+                    || tooLargeAtSpot(p[3])))
                 return false;
         }
         return true;

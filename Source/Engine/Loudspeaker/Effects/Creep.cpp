@@ -54,7 +54,7 @@ public:
         width.name = "width";
         width.unit = "decades";
         width.value = 2.0;
-        width.even = true;  // no bound at 0: a search that passes through the single relaxation must not hit a wall
+        width.even = true;  // with the signs of the odd departures, its own only mirrors the relaxations
         width.prior = 3.0;
         tilt.name = "tilt";
         tilt.unit = "1";

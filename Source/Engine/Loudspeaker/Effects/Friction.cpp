@@ -44,7 +44,7 @@ public:
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         const double springForce = e.scale * e.displacement, X = e.displacement;
-        constexpr double anySpread = 3.0;  // no bound at 0: a search that passes through one element must not hit a wall
+        constexpr double anySpread = 3.0;
         return {{.name = "Fc", .unit = "N", .lower = 0.0, .strength = true, .prior = springForce},
                 {.name = "reach", .unit = "m", .value = 0.08 * X, .lower = 2e-3 * X, .upper = 2.0 * X},
                 {.name = "spread", .unit = "octaves", .value = 2.0, .even = true, .prior = anySpread},
