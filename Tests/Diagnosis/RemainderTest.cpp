@@ -80,6 +80,33 @@ TEST_CASE("What is left is told by channel, band, kind and growth", "[remainder]
     CHECK_THAT(inWords(remainder), Catch::Contains("current error at -40.0 dB over noise at -60.0 dB"));
 }
 
+TEST_CASE("What stands out at one level alone is told of that level", "[remainder]")
+{
+    auto comparison = oneChannel();
+    auto& channel = comparison.channels.front();
+    channel.total = {-68.6, -63.7, 1.0};  // noise, as the loudest level drifts
+    channel.byLevel = {{-67.9, -71.4, 30.0}, {-66.5, -62.8, 0.9}};
+    channel.kindsByLevel[0].linear = -68.0;
+    const auto remainder = remainderOf(comparison);
+    const auto& part = remainder.channels.front();
+    CHECK(part.level == "the lowest level");
+    CHECK(part.db == -67.9);
+    CHECK(part.noiseFloorDb.value() == -71.4);
+    CHECK(part.aboveNoiseDb.value() == Approx(10.0 * std::log10(30.0)));
+    CHECK(part.kinds.linear.value() == -68.0);
+    CHECK_THAT(unexplained(remainder),
+               Catch::Contains("current error at -67.9 dB over noise at -71.4 dB at the lowest level"));
+    const nlohmann::json document = toJson(remainder);
+    const auto back = remainderFromJson(JsonField(document, "", "test"));
+    CHECK(back.channels.front().level == part.level);
+
+    channel.byLevel = {{-75.0, -71.4, 0.5}, {-59.0, -62.8, 4.0}};
+    CHECK(remainderOf(comparison).channels.front().level == "the highest level");
+    channel.byLevel = {{-71.0, -71.4, 1.0}, {-62.8, -62.8, 1.0}};
+    CHECK(remainderOf(comparison).channels.front().level.empty());
+    CHECK(remainderOf(comparison).channels.front().db == -68.6);
+}
+
 TEST_CASE("The shape of the missing force says what it looks like", "[remainder]")
 {
     auto comparison = oneChannel();

@@ -33,26 +33,52 @@ std::vector<double> squares(const std::vector<double>& values)
     return power;
 }
 
+/// The level that stands out farthest from its noise, where all together do not.
+std::optional<std::size_t> levelThatStandsOut(const ChannelComparison& channel)
+{
+    std::optional<std::size_t> found;
+    if (!isNoise(channel.total))
+        return found;
+    for (std::size_t k = 0; k < channel.byLevel.size(); ++k)
+        if (const auto& error = channel.byLevel[k];
+            error.noiseFloorDb && !isNoise(error)
+            && (!found || error.chiSquaredPerValue > channel.byLevel[*found].chiSquaredPerValue))
+            found = k;
+    return found;
+}
+
+std::string levelInWords(std::size_t level, std::size_t count)
+{
+    return level == 0           ? "the lowest level"
+           : level + 1 == count ? "the highest level"
+                                : "level " + std::to_string(level + 1) + " of " + std::to_string(count);
+}
+
 ChannelRemainder partOf(const ChannelComparison& channel, const Comparison& comparison)
 {
     ChannelRemainder part;
     part.quantity = channel.quantity;
     part.title = titleOf(channel);
-    part.db = channel.total.db;
-    part.noiseFloorDb = channel.total.noiseFloorDb;
+    const auto alone = levelThatStandsOut(channel);
+    if (alone)
+        part.level = levelInWords(*alone, channel.byLevel.size());
+    const auto& error = alone ? channel.byLevel[*alone] : channel.total;
+    const auto there = [&](std::size_t count) { return std::min(alone.value_or(count), count - 1); };
+    part.db = error.db;
+    part.noiseFloorDb = error.noiseFloorDb;
     part.wanderDb = channel.wanderDb;
     if (comparison.noiseKnown)
-        part.aboveNoiseDb = 10.0 * std::log10(std::max(channel.total.chiSquaredPerValue, 1e-30));
+        part.aboveNoiseDb = 10.0 * std::log10(std::max(error.chiSquaredPerValue, 1e-30));
     if (part.noiseFloorDb)
         part.repeats = std::max(0.0, 1.0 - std::pow(10.0, (*part.noiseFloorDb - part.db) / 10.0));
-    if (!channel.spectrumByLevel.empty() && !channel.spectrumByLevel.back().frequency.empty()) {
-        const auto& s = channel.spectrumByLevel.back();
-        const auto [low, high] = middleOf(squares(s.error));
-        part.low = s.frequency[low];
-        part.high = s.frequency[high];
-    }
-    if (!channel.kindsByLevel.empty())
-        part.kinds = channel.kindsByLevel.back();
+    if (const auto& all = channel.spectrumByLevel; !all.empty())
+        if (const auto& s = all[there(all.size())]; !s.frequency.empty()) {
+            const auto [low, high] = middleOf(squares(s.error));
+            part.low = s.frequency[low];
+            part.high = s.frequency[high];
+        }
+    if (const auto& all = channel.kindsByLevel; !all.empty())
+        part.kinds = all[there(all.size())];
     if (channel.byLevel.size() > 1 && comparison.levels.front() > 0.0)
         part.growth = (channel.byLevel.back().db - channel.byLevel.front().db)
                       / (20.0 * std::log10(comparison.levels.back() / comparison.levels.front()));
@@ -162,7 +188,8 @@ namespace {
 std::string amountOf(const ChannelRemainder& part)
 {
     return part.title + " error at " + figure(part.db) + " dB"
-           + (part.noiseFloorDb ? " over noise at " + figure(*part.noiseFloorDb) + " dB" : std::string());
+           + (part.noiseFloorDb ? " over noise at " + figure(*part.noiseFloorDb) + " dB" : std::string())
+           + (part.level.empty() ? std::string() : " at " + part.level);
 }
 
 std::string likeness(const Remainder& remainder)

@@ -13,15 +13,18 @@ namespace excursion {
 struct ChannelRemainder {
     Quantity quantity = Quantity::current;
     std::string title;  ///< "current", "impedance"
-    double db = 0.0;    ///< error relative to the measurement, all levels
+    /// "the lowest level", "level 2 of 3": where all levels together are noise, the one that stands out farthest; what
+    /// follows is of it. Else empty.
+    std::string level;
+    double db = 0.0;  ///< error relative to the measurement, all levels
     std::optional<double> noiseFloorDb;
     /// 10 log10 of the mean |error|^2/sigma^2 over the lines: 0 if only noise is left
     std::optional<double> aboveNoiseDb;
     std::optional<double> wanderDb;  ///< as in ChannelComparison
     std::optional<double> repeats;   ///< share of the error's power that is the same in every period, 0..1
-    /// Hz, the band that holds the middle 80 % of the error's power at the loudest level
+    /// Hz, the band that holds the middle 80 % of the error's power at the loudest level, or that which stands out
     double low = 0.0, high = 0.0;
-    ErrorKinds kinds;  ///< at the loudest level
+    ErrorKinds kinds;  ///< at the same level
     /// dB of relative error per dB of level: n - 1 for distortion of order n, 0 for a linear error
     std::optional<double> growth;
 };

@@ -13,6 +13,7 @@ Json partJson(const ChannelRemainder& part)
 {
     return {{"channel", name(part.quantity)},
             {"title", part.title},
+            {"level", part.level.empty() ? Json(nullptr) : Json(part.level)},
             {"db", numberOrNull(part.db)},
             {"noiseFloorDb", optionalNumber(part.noiseFloorDb)},
             {"aboveNoiseDb", optionalNumber(part.aboveNoiseDb)},
@@ -28,6 +29,8 @@ ChannelRemainder partFrom(const JsonField& field)
     ChannelRemainder part;
     part.quantity = quantityFromJson(field.at("channel"));
     part.title = field.at("title").text();
+    if (field.has("level"))  // older documents do not have it
+        part.level = field.at("level").text();
     part.db = field.at("db").numberOrNaN();
     part.noiseFloorDb = field.at("noiseFloorDb").optionalNumber();
     part.aboveNoiseDb = field.at("aboveNoiseDb").optionalNumber();
