@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/DividedStep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace excursion {
@@ -20,7 +21,7 @@ void shiftByOne(Polynomial& p)
 }  // namespace
 
 DividedStep::DividedStep(const Model& model, const StepDivision& division, double h)
-    : model_(model), division_(division), step_(h), now_(&steps_[0].emplace(model, h))
+    : division_(division), steps_(model, h), now_(&steps_[0])
 {
 }
 
@@ -38,12 +39,10 @@ void DividedStep::letSlowStand(bool stands)
 
 void DividedStep::goOnWith(int power)
 {
-    auto& next = steps_[static_cast<std::size_t>(power)];
-    if (!next)
-        next.emplace(model_, std::ldexp(step_, -power));
-    next->letSlowStand(slowStands_);
-    next->takeOver(*now_);
-    now_ = &*next;
+    auto& next = steps_[power];
+    next.letSlowStand(slowStands_);
+    next.takeOver(*now_);
+    now_ = &next;
     power_ = power;
 }
 

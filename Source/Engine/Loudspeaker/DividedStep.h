@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/ExponentialStep.h"
 #include "Engine/Loudspeaker/StepDivision.h"
+#include "Engine/Loudspeaker/StepParts.h"
 
 #include <Eigen/Core>
 
-#include <array>
-#include <optional>
 #include <span>
 
 namespace excursion {
@@ -38,10 +36,8 @@ public:
 private:
     void goOnWith(int power);
 
-    const Model& model_;
     const StepDivision& division_;
-    double step_;                                                             ///< s
-    std::array<std::optional<ExponentialStep>, StepDivision::powers> steps_;  // those that were asked for
+    StepParts steps_;
     int power_ = 0;
     ExponentialStep* now_;
     double before_ = 0.0;  // A, at the last step's start

@@ -1,35 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/StepDivision.h"
 
-#include "Engine/Loudspeaker/ExponentialStep.h"
+#include "Engine/Loudspeaker/StepParts.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace excursion {
 namespace {
 
 constexpr double outer = 0.7;  // share of the current's range from which on the end of it counts
-
-/// Steps of a model in 1, 2, 4 .. parts, each made when it is asked for.
-class Parts {
-public:
-    Parts(const Model& model, double step) : model_(model), step_(step) {}
-
-    ExponentialStep& operator[](int power)
-    {
-        auto& part = parts_[static_cast<std::size_t>(power)];
-        if (!part)
-            part.emplace(model_, std::ldexp(step_, -power));
-        return *part;
-    }
-
-private:
-    const Model& model_;
-    double step_;
-    std::array<std::optional<ExponentialStep>, StepDivision::powers> parts_;
-};
 
 }  // namespace
 
@@ -43,7 +23,7 @@ int StepDivision::cellOfVelocity(double share)
 StepDivision::StepDivision(const Model& model, double sampleRate)
 {
     constexpr std::array<double, speeds> shares {0.25, 0.5, 1.0};
-    Parts parts(model, 1.0 / sampleRate);
+    StepParts parts(model, 1.0 / sampleRate);
     for (const auto& slope : parts[0].lawSlopes(ExponentialStep::Places::all, shares)) {
         auto table = std::find_if(tables_.begin(), tables_.end(), [&](const Table& known) {
             return known.displacement == slope.range->displacement && known.velocity == slope.range->velocity
@@ -63,6 +43,7 @@ StepDivision::StepDivision(const Model& model, double sampleRate)
                     work(table->power[static_cast<std::size_t>(cellOf(k, middle, v))]);
             }
         };
+        constexpr int powers = StepParts::powers;
         signed char least = powers;
         each([&](signed char known) { least = std::min(least, known); });
         int power = least;  // where all cells have more this place asks for nothing

@@ -14,11 +14,9 @@ namespace excursion {
 /// grows everywhere.
 class StepDivision {
 public:
-    static constexpr int powers = 7;  ///< 1, 2, 4 .. 64 parts
-
     StepDivision(const Model&, double sampleRate);
 
-    /// The power of two of the parts.
+    /// The power of two of the parts, below StepParts::powers.
     /// @param i  current, A
     /// @param x  displacement, m
     /// @param v  velocity, m/s

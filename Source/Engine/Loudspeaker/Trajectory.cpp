@@ -12,7 +12,7 @@
 namespace excursion {
 namespace {
 
-constexpr int mostSubsteps = 64;
+constexpr int mostSubsteps = 1 << (StepParts::powers - 1);
 
 }  // namespace
 
