@@ -101,3 +101,22 @@ TEST_CASE("A part too many is put at rest, and the parts that ring stay", "[effe
     CHECK_FALSE(restImplausibleParts(model, 1));
     CHECK(own[0].value == mass);
 }
+
+TEST_CASE("A part that stands for something else gives way to one that is there", "[effects]")
+{
+    const std::vector<bench::HungPart> parts {{0.03, 640.0, 8.0}, {0.02, 1900.0, 10.0}};
+    const std::vector targets {impedanceOf(with(parts))};
+    auto model = startModel(targets, true, {});
+    REQUIRE(addByResponse(model, effectNamed("side-resonance"), targets).usable());
+    const auto found = responseErrorDb(model, targets.front());
+    auto& own = model.components.back().parameters;
+    own[3].value = 0.2 * model.baseParameter("m").value;  // heavy and dull, far below the cone's resonance
+    own[4].value = 0.3 * targets.front().frequency.front();
+    own[5].value = 5.0;
+    auto fitted = model;
+    fitResponse(fitted, targets);
+    REQUIRE_FALSE(isItself(fitted, 1));
+    refineByResponse(model, targets);
+    CHECK(isSeen(model, 1));
+    CHECK(responseErrorDb(model, targets.front()) < found + 3.0);
+}

@@ -230,6 +230,39 @@ TEST_CASE("A box is found from a base that takes its sound for another one", "[e
     }
 }
 
+TEST_CASE("A leak at the lower end of the band is found where the air is most of the spring", "[effects]")
+{
+    // Without the leak the base takes the air for its suspension, and the iron about the coil some of what is left.
+    std::vector<double> f;
+    for (double at = 5.0; at < 20000.0; at *= 1.1)
+        f.push_back(at);
+    for (const double share : {3.7, 6.0})  // of the air's stiffness to the suspension's
+        for (const double tuning : {4.5, 6.4, 8.0})
+            for (const double loss : {0.8, 1.2}) {
+                CAPTURE(share, tuning, loss);
+                auto truth = boxed({share * 2400.0, tuning, 0.0, loss, 0.0, 0.0});
+                truth.baseParameter("K").value = 2400.0;
+                truth = withEffect(truth, effectNamed("eddy-currents"), truth.components.back().operatingRange);
+                truth.components.back().parameters[0].value = 0.0045;
+                truth.components.back().parameters[1].value = 0.74;
+                const auto responses = respond(truth, {Quantity::current, Quantity::velocity}, f);
+                ResponseTarget impedance {Quantity::current, true, f, {}, {}};
+                for (const auto& admittance : responses[0].value) {
+                    impedance.value.push_back(1.0 / admittance);
+                    impedance.deviation.push_back(1.0 / std::abs(admittance));
+                }
+                ResponseTarget velocity {Quantity::velocity, false, f, responses[1].value, {}};
+                velocity.deviation.assign(f.size(), 0.2);
+                const std::vector<ResponseTarget> targets {impedance, velocity};
+                auto model = startModel(targets, true, {});
+                fitResponse(model, targets);
+                REQUIRE(addByResponse(model, effectNamed("eddy-currents"), targets).usable());
+                REQUIRE(addByResponse(model, effectNamed("vented-box"), targets).usable());
+                CHECK(responseErrorDb(model, targets) < -50.0);
+                CHECK(isItself(model, model.components.size() - 1));
+            }
+}
+
 TEST_CASE("Delay, area and the port's share of a sound are found from anywhere", "[effects]")
 {
     const auto f = frequencies();

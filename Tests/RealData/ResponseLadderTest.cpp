@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace excursion;
 using namespace excursion::test;
@@ -102,6 +103,25 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     CHECK(box->parameters[0].value > 2.0 * ladder.model().baseParameter("K").value);
     CHECK(box->parameters[1].value == Approx(6.5).margin(1.0));
     checkParameters(ladder.model());
+}
+
+TEST_CASE("A ladder of responses does not turn on their last digits", "[.thorough][slow]")
+{
+    const auto folder = dataFolder("novak");
+    if (folder.empty())
+        return;
+    const auto measured = std::get<Spectra>(readTake(folder / "novak.csv"));
+    const auto ladder = improve(measured);
+    std::mt19937 generator(7);
+    std::normal_distribution<> digit(0.0, 1e-9);
+    auto other = measured;
+    for (auto& channel : other.channels)
+        for (auto& value : channel.values)
+            value *= 1.0 + digit(generator);
+    const auto same = improve(other);
+    CHECK(same.model().effectIds() == ladder.model().effectIds());
+    for (const auto quantity : {Quantity::current, Quantity::velocity})
+        CHECK(percent(same.rungs.back(), quantity) == Approx(percent(ladder.rungs.back(), quantity)).epsilon(0.05));
 }
 
 TEST_CASE("An effect that is put in by hand leaves no more than the model without it", "[slow]")

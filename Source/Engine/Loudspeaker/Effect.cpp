@@ -32,7 +32,11 @@ std::vector<std::vector<double>> Effect::starts(const OperatingRange& operatingR
 
 std::vector<Part> Effect::parts(const OperatingRange&) const { return {}; }
 
-std::vector<double> Effect::restarts(const OperatingRange&, const std::vector<double>&) const { return {}; }
+std::vector<Restart> Effect::restarts(const OperatingRange&, const std::vector<double>&,
+                                      const std::vector<Parameter>&) const
+{
+    return {};
+}
 
 bool Effect::plausible(const OperatingRange&, const std::vector<Parameter>&, const std::vector<Parameter>&) const
 {

@@ -145,6 +145,12 @@ struct Part {
     std::vector<std::vector<double>> starts;
 };
 
+/// Where a search begins again: values of the effect, and another resonance of the base.
+struct Restart {
+    double resonance = 0.0;   ///< of the base alone, Hz
+    std::vector<double> own;  ///< the effect's parameters
+};
+
 /// The names and descriptions of an effect, and the two facts that decide where it can occur.
 struct EffectCard {
     std::string id;           ///< "force-factor"
@@ -187,9 +193,10 @@ public:
     /// justified. None: the effect is searched as a whole.
     virtual std::vector<Part> parts(const OperatingRange&) const;
 
-    /// Additional resonances of the base in Hz for a search on a frequency response from this start, besides the base's
-    /// own: a base that was fitted without the effect may have settled on a resonance of the effect.
-    virtual std::vector<double> restarts(const OperatingRange&, const std::vector<double>& start) const;
+    /// Additional starts for a search on a frequency response, of this start with the base elsewhere: a base that was
+    /// fitted without the effect may have settled on a resonance of the effect, or do part of its work.
+    virtual std::vector<Restart> restarts(const OperatingRange&, const std::vector<double>& start,
+                                          const std::vector<Parameter>& base) const;
 
     /// Whether these values are plausible for the effect, with a base of these parameters. If not, the effect stands
     /// for something else, and it is not named.

@@ -72,8 +72,9 @@ SearchSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 /// The same for component k.
 SearchSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
 
-/// Fits a model that has a new effect. Other effects that have several parts are also searched again, as the new one
-/// may have uncovered more parts. The parts are unchanged if that brings little.
+/// Fits a model that has a new effect. Of effects that have several parts more are looked for from where they are, and
+/// of the older ones also all of them anew, as the new effect may have uncovered more. The parts are unchanged if that
+/// brings little, unless they stand for something else.
 SearchSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 
 /// Whether a component has plausible values (Effect::plausible()) beside the model's base.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/MatchSound.h"
-
-#include <Eigen/Cholesky>
+#include "Engine/Loudspeaker/Parts.h"
+#include "Engine/Loudspeaker/Ways.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,22 +13,6 @@
 
 namespace excursion {
 namespace {
-
-/// What a search has come to.
-struct Way {
-    Model model;
-    double cost;
-};
-
-bool cheaper(const Way& a, const Way& b) { return a.cost < b.cost; }
-
-/// What can be the effect comes before what has been bent to stand for something else, and then what leaves less.
-bool better(const Way& a, const Way& b)
-{
-    const auto plausible = [](const Model& model) { return isPlausible(model, model.components.size() - 1); };
-    const bool first = plausible(a.model), second = plausible(b.model);
-    return first != second ? first : a.cost < b.cost;
-}
 
 /// The model with a base that resonates at that frequency, neither sharply nor dully.
 Model withResonance(Model model, double frequency)
@@ -41,12 +25,12 @@ Model withResonance(Model model, double frequency)
     return model;
 }
 
-/// Whether no strength of a part of the newest effect is less than it can be.
-bool isPossible(const Model& model, const Part& part)
+/// The model whose newest effect has these values.
+Model withOwn(Model model, const std::vector<double>& values)
 {
-    const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
-    return std::all_of(own, own + static_cast<std::ptrdiff_t>(part.count),
-                       [](const Parameter& p) { return !p.strength || p.value >= p.lower; });
+    for (std::size_t k = 0; k < values.size(); ++k)
+        model.components.back().parameters[k].value = values[k];
+    return model;
 }
 
 /// What the model leaves with its newest effect at rest, as it stands.
@@ -54,71 +38,6 @@ double leftAtRest(Model model, const std::vector<ResponseTarget>& targets)
 {
     model.components.back() = scaled(std::move(model.components.back()), 0.0);
     return fitResponse(model, targets, {1, 1e-3}).initialCost;
-}
-
-double rowsOf(const std::vector<ResponseTarget>& targets)
-{
-    double rows = 0.0;
-    for (const auto& target : targets)
-        rows += 2.0 * static_cast<double>(target.value.size());
-    return rows;
-}
-
-/// The model with one part of its newest effect at work, from where that promises most: each of the starts that promise
-/// more than those beside them, and several of these, as parts that lie close together first show as one.
-Way withPart(const Model& model, const Part& part, const std::vector<bool>& free,
-             const std::vector<ResponseTarget>& targets)
-{
-    const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
-    const bool oneWay = std::any_of(own, own + static_cast<std::ptrdiff_t>(part.count),
-                                    [](const Parameter& p) { return p.strength && std::isfinite(p.lower); });
-    constexpr double never = std::numeric_limits<double>::infinity();
-    const auto search = [&](Model& trial, const LeastSquaresOptions& options) {
-        const auto run = fitResponse(trial, targets, options);
-        return run.usable() && std::isfinite(run.finalCost) ? run.finalCost : never;
-    };
-    std::vector<Way> starts;
-    for (const auto& start : part.starts) {
-        auto trial = model;
-        for (std::size_t k = 0; k < part.count; ++k) {
-            auto& p = trial.components.back().parameters[part.first + k];
-            p.value = start[k];
-            p.free = free[part.first + k];
-        }
-        // One step tells what a strength promises, unless it would have to be what it cannot be.
-        auto stepped = trial;
-        double left = stepOnResponses(stepped, targets);
-        if (!std::isfinite(left) || !isPossible(stepped, part))
-            left = never;
-        starts.push_back({oneWay ? std::move(trial) : std::move(stepped), left});
-    }
-    std::vector<Way> ways;
-    for (std::size_t k = 0; k < starts.size(); ++k)
-        if ((k == 0 || starts[k].cost < starts[k - 1].cost)
-            && (k + 1 == starts.size() || starts[k].cost <= starts[k + 1].cost))
-            ways.push_back(starts[k]);
-    if (oneWay) {  // beside a bound a short search bends round it
-        constexpr std::size_t promising = 8;
-        std::stable_sort(ways.begin(), ways.end(), cheaper);
-        ways.resize(std::min(ways.size(), promising));
-        for (auto& way : ways)
-            way.cost = search(way.model, {3, 1e-3});
-    }
-    std::stable_sort(ways.begin(), ways.end(), cheaper);
-    constexpr std::size_t most = 3;
-    ways.resize(std::min(ways.size(), most));
-    for (auto& way : ways)
-        way.cost = search(way.model, {8, 1e-4});
-    const auto best = std::min_element(ways.begin(), ways.end(), better);
-    return best == ways.end() ? Way {model, never} : *best;
-}
-
-/// How much of its cost a part must take away: more than chance does at the best of a hundred places.
-double worthwhile(double left, const std::vector<ResponseTarget>& targets)
-{
-    constexpr double pays = 40.0;    // times the mean square of what is left
-    constexpr double enough = 0.07;  // of what is left, where there are few points
-    return std::min(pays / rowsOf(targets), enough) * left;
 }
 
 /// The responses of the sound, and all others; no sound where either is not there.
@@ -138,45 +57,6 @@ Heard heardApart(const std::vector<ResponseTarget>& targets)
     if (heard.others.empty())
         heard.sound.reset();
     return heard;
-}
-
-/// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where
-/// others do.
-SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
-{
-    constexpr int enoughPoints = 24;  // an octave, to tell where a part may begin
-    const auto enough = thinned(targets, enoughPoints);
-    auto best = model;
-    auto& component = best.components.back();
-    component.parameters = component.effect->parameters(component.operatingRange);
-    std::vector<bool> free;
-    for (auto& p : component.parameters) {
-        free.push_back(movable(best, *component.effect, p));
-        p.free = false;
-        if (p.strength)
-            p.value = 0.0;
-    }
-    auto summary = fitResponse(best, targets, {40, 1e-5});
-    bool found = false;
-    for (const auto& part : parts) {
-        auto way = withPart(best, part, free, enough);
-        if (!std::isfinite(way.cost))
-            break;
-        const auto run = fitResponse(way.model, targets, {40, 1e-5});
-        if (!run.usable() || !(summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)))
-            break;
-        summary = run;
-        best = std::move(way.model);
-        found = true;
-    }
-    // More than once: priors and the reach of the search are relative to where a fit starts.
-    if (summary.usable())
-        summary = fitResponse(best, targets, {80, 1e-8});
-    for (std::size_t k = 0; !found && k < free.size(); ++k)
-        best.components.back().parameters[k].free = free[k];
-    if (summary.usable())
-        model = std::move(best);
-    return summary;
 }
 
 }  // namespace
@@ -218,12 +98,9 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
         from(std::move(trial), few, {10, 1e-3});
     };
     for (const auto& start : newest.effect->starts(newest.operatingRange)) {
-        auto trial = model;
-        for (std::size_t k = 0; k < start.size(); ++k)
-            trial.components.back().parameters[k].value = start[k];
-        for (const double resonance : newest.effect->restarts(newest.operatingRange, start))
-            begin(withResonance(trial, resonance));
-        begin(std::move(trial));
+        for (const auto& restart : newest.effect->restarts(newest.operatingRange, start, model.base().parameters))
+            begin(withResonance(withOwn(model, restart.own), restart.resonance));
+        begin(withOwn(model, start));
     }
     const auto sort = [&](const std::vector<ResponseTarget>& at) {
         std::stable_sort(ways.begin(), ways.end(), better);
@@ -250,12 +127,16 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     return summary;
 }
 
-SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
+namespace {
+
+/// A fit of component k as if it were the newest.
+template <class Fit>
+SearchSummary fitAsNewest(Model& model, std::size_t k, const Fit& fit)
 {
     auto trial = model;
     const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
     std::rotate(place, place + 1, trial.components.end());
-    auto summary = fitNewestByResponse(trial, targets);
+    auto summary = fit(trial);
     if (!summary.usable())
         return summary;
     model = std::move(trial);
@@ -265,116 +146,40 @@ SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<Respo
     return summary;
 }
 
+}  // namespace
+
+SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
+{
+    return fitAsNewest(model, k, [&](Model& trial) { return fitNewestByResponse(trial, targets); });
+}
+
 SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const LeastSquaresOptions thoroughly {80, 1e-9};
     auto summary = fitResponse(model, targets, thoroughly);
-    for (std::size_t k = 1; k + 1 < model.components.size(); ++k) {
-        const auto& older = model.components[k];
-        if (!older.effect->linear() || older.effect->parts(older.operatingRange).empty())
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto own = model.components[k];
+        const auto parts = own.effect->parts(own.operatingRange);
+        if (!own.effect->linear() || parts.empty())
             continue;
-        auto trial = model;
-        if (!fitByResponse(trial, k, targets).usable())
-            continue;
-        const auto run = fitResponse(trial, targets, thoroughly);
-        if (run.usable() && summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)
-            && isSeen(trial, k)) {
-            model = std::move(trial);
-            summary = run;
-        }
+        const auto keepBetter = [&](const auto& fit) {
+            auto trial = model;
+            if (!fitAsNewest(trial, k, fit).usable())
+                return;
+            const auto run = fitResponse(trial, targets, thoroughly);
+            // What is not itself may go at the price of a part.
+            const double part = worthwhile(run.finalCost, targets), needed = isItself(model, k) ? part : -part;
+            if (run.usable() && summary.finalCost - run.finalCost > needed && isSeen(trial, k)) {
+                model = std::move(trial);
+                summary = run;
+            }
+        };
+        // More of them from where it is, and all of them anew beside a new effect: neither finds everything.
+        keepBetter([&](Model& trial) { return fitMoreParts(trial, parts, targets); });
+        if (k + 1 < model.components.size())
+            keepBetter([&](Model& trial) { return fitParts(trial, parts, targets); });
     }
     return summary;
-}
-
-bool isPlausible(const Model& model, std::size_t component)
-{
-    const auto& own = model.components[component];
-    return own.effect->plausible(own.operatingRange, own.parameters, model.base().parameters);
-}
-
-bool isItself(const Model& model, std::size_t component)
-{
-    constexpr double atBound = 0.002;  // of the range
-    const auto& own = model.components[component];
-    return isPlausible(model, component)
-           && std::none_of(own.parameters.begin(), own.parameters.end(), [](const Parameter& p) {
-                  const double range = p.upper - p.lower;
-                  return !p.strength && std::isfinite(range)
-                         && std::min(p.value - p.lower, p.upper - p.value) < atBound * range;
-              });
-}
-
-namespace {
-
-/// The component with all of its parts at rest but one.
-Component withOnly(const Part& part, Component component)
-{
-    for (std::size_t k = 0; k < component.parameters.size(); ++k)
-        if (component.parameters[k].strength && (k < part.first || k >= part.first + part.count))
-            component.parameters[k].value = 0.0;
-    return component;
-}
-
-}  // namespace
-
-bool restImplausibleParts(Model& model, std::size_t component)
-{
-    auto& own = model.components[component];
-    const auto& base = model.base().parameters;
-    auto rested = own;
-    bool stays = false, goes = false;
-    for (const auto& part : own.effect->parts(own.operatingRange)) {
-        const auto alone = withOnly(part, own);
-        if (!isAtWork(alone))
-            continue;
-        if (own.effect->plausible(own.operatingRange, alone.parameters, base)) {
-            stays = true;
-            continue;
-        }
-        goes = true;
-        for (std::size_t k = part.first; k < part.first + part.count; ++k) {
-            auto& p = rested.parameters[k];
-            p.free = false;
-            if (p.strength)
-                p.value = 0.0;
-        }
-    }
-    if (!stays || !goes)
-        return false;
-    own = std::move(rested);
-    return true;
-}
-
-bool isSeen(const Model& model, std::size_t component)
-{
-    constexpr double sure = 4.0;  // standard errors, which take neighbouring points for independent
-    if (model.covariance.size() == 0 || !isItself(model, component))
-        return false;
-    Eigen::Index first = 0;
-    for (std::size_t k = 0; k < component; ++k)
-        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
-    const auto& parameters = model.components[component].parameters;
-    std::vector<Eigen::Index> shapes, strengths;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const auto index = first + static_cast<Eigen::Index>(k);
-        if (parameters[k].strength)
-            strengths.push_back(index);
-        else if (model.covariance(index, index) > 0.0)
-            shapes.push_back(index);
-    }
-    const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
-    for (const auto index : strengths) {
-        double variance = model.covariance(index, index);  // NaN where it is not known
-        if (!shapes.empty()) {
-            const Eigen::VectorXd shared = model.covariance(shapes, index);
-            variance -= shared.dot(known.solve(shared));
-        }
-        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value)
-                > sure * std::sqrt(std::max(variance, 0.0))
-            && std::isfinite(variance))
-            return true;
-    }
-    return false;
 }
 
 }  // namespace excursion

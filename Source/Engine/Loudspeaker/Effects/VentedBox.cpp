@@ -3,9 +3,12 @@
 
 #include "Engine/Loudspeaker/Network.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace excursion {
 namespace {
@@ -70,12 +73,20 @@ public:
         return starts;
     }
     /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look;
-    /// without the air of a closed box well above its leak.
-    std::vector<double> restarts(const OperatingRange&, const std::vector<double>& start) const override
+    /// without the air of a closed box well above its leak. That air is most of the stiffness that the base has found.
+    std::vector<Restart> restarts(const OperatingRange&, const std::vector<double>& start,
+                                  const std::vector<Parameter>& base) const override
     {
-        if (start[2] > someLoss)
-            return {2.0 * start[1], 6.0 * start[1]};
-        return {start[1], 1.5 * start[1]};
+        if (start[2] <= someLoss)
+            return {{start[1], start}, {1.5 * start[1], start}};
+        std::vector<Restart> restarts;
+        for (const double above : {2.0, 6.0}) {
+            Restart restart {above * start[1], start};
+            const double suspension = std::pow(restart.resonance / resonanceOf(base), 2);  // of the stiffness
+            restart.own[0] = std::max(0.0, 1.0 - suspension) * parameterNamed(base, "K").value;
+            restarts.push_back(std::move(restart));
+        }
+        return restarts;
     }
     /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
     /// or the radiator is not much lighter than the cone, heavier the higher it is tuned, and the air in the box is
