@@ -34,7 +34,7 @@ struct Bent {
     void fitFurther()
     {
         options.substeps = 2;
-        options.exactGradient = true;
+        options.gradientSubsteps = 2;
         options.search = {60, 1e-9};
         summary = fit(model, record, estimationSections(record), options);
         REQUIRE(summary.usable());

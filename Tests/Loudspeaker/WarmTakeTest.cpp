@@ -9,8 +9,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 using namespace excursion;
 
@@ -73,4 +75,38 @@ TEST_CASE("A section of a take in which the coil warms is what the whole take ma
         }
     }
     CHECK(fall > 5e-3);
+}
+
+TEST_CASE("A step of a search keeps to the rise of the resistance that its slopes promise", "[output-error]")
+{
+    const auto model = warming(5.0);
+    const auto& heating = *model.find("coil-heating");
+    const auto riseAt = [](const double* p, double t) {
+        return p[0] * (1.0 - std::exp(-t / std::pow(10.0, p[1])) + p[2] * (1.0 - std::exp(-t / std::pow(10.0, p[3]))));
+    };
+    std::vector<double> from;
+    for (const auto& p : heating.parameters)
+        from.push_back(p.value);
+    // More of the fast stage, which is slower then, and less of the slow one: a take hardly tells that.
+    const std::vector<double> step {0.03, 0.1, -0.25, 0.0};
+    auto plain = from, followed = from;
+    for (std::size_t k = 0; k < step.size(); ++k)
+        plain[k] = followed[k] = from[k] + step[k];
+    heating.effect->follow(heating.operatingRange, from.data(), followed.data());
+    double worstPlain = 0.0, worstFollowed = 0.0;
+    for (const double t : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0}) {
+        constexpr double little = 1e-5;
+        auto near = from;
+        for (std::size_t k = 0; k < step.size(); ++k)
+            near[k] += little * step[k];
+        const double promised = riseAt(from.data(), t) + (riseAt(near.data(), t) - riseAt(from.data(), t)) / little;
+        worstPlain = std::max(worstPlain, std::abs(riseAt(plain.data(), t) - promised));
+        worstFollowed = std::max(worstFollowed, std::abs(riseAt(followed.data(), t) - promised));
+    }
+    CAPTURE(worstPlain, worstFollowed, followed);
+    CHECK(worstFollowed < 0.1 * worstPlain);
+    for (std::size_t k = 0; k < followed.size(); ++k) {
+        CHECK(followed[k] >= heating.parameters[k].lower);
+        CHECK(followed[k] <= heating.parameters[k].upper);
+    }
 }

@@ -255,6 +255,60 @@ TEST_CASE("Steps that their own slopes correct go round the bend of a valley in 
     CHECK(stepsFor([] { return Eigen::VectorXd(); }) == plain);
 }
 
+TEST_CASE("Steps along a bend that is known need fewer slopes", "[least-squares]")
+{
+    // Rosenbrock's valley, y = x^2 where it is lowest.
+    int slopes = 0;
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        const Eigen::Vector2d r(100.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]);
+        sum = NormalEquations(r);
+        slopes += gradient;
+        if (gradient)
+            sum.differentiateBy(Eigen::Matrix2d {{-200.0 * at[0], 100.0}, {-1.0, 0.0}}, r);
+        return true;
+    };
+    const auto bent = [](const Eigen::VectorXd& from, const Eigen::VectorXd& d) -> Eigen::VectorXd {
+        return two(from[0] + d[0], from[1] + d[1] + d[0] * d[0]);
+    };
+    const auto slopesBy = [&](const Retraction& retraction) {
+        auto at = two(-1.2, 1.0);
+        slopes = 0;
+        const auto summary = minimize(evaluate, at, two(-infinite, -infinite), two(infinite, 1.5), exact(), {}, {},
+                                      retraction);
+        INFO(summary.message);
+        CHECK(summary.usable());
+        CHECK(at[0] == Approx(1.0).epsilon(1e-6));
+        CHECK(at[1] == Approx(1.0).epsilon(1e-6));
+        return slopes;
+    };
+    const int straight = slopesBy({}), along = slopesBy(bent);
+    INFO(straight << " slopes, " << along << " along the bend");
+    CHECK(2 * along < straight);
+}
+
+TEST_CASE("What is held moves in shorter steps to the same place", "[least-squares]")
+{
+    for (const double held : {0.0, 3.0}) {
+        std::vector<double> way;
+        const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+            const Eigen::Vector2d r(10.0 * (at[0] - 2.0), at[1] - 5.0);
+            sum = NormalEquations(r);
+            sum.held = two(0.0, held);
+            if (gradient) {
+                sum.differentiateBy(Eigen::Matrix2d {{10.0, 0.0}, {0.0, 1.0}}, r);
+                way.push_back(at[1]);
+            }
+            return true;
+        };
+        auto at = two(0.0, 0.0);
+        REQUIRE(minimize(evaluate, at, two(-infinite, -infinite), two(infinite, infinite), exact()).usable());
+        CHECK(at[0] == Approx(2.0).epsilon(1e-6));
+        CHECK(at[1] == Approx(5.0).epsilon(1e-4));
+        REQUIRE(way.size() > 1);
+        CHECK(way[1] == Approx(5.0 / (1.0 + held)).epsilon(0.01));
+    }
+}
+
 TEST_CASE("A step that is corrected stays within its bounds", "[least-squares]")
 {
     // The least of Rosenbrock's valley with x up to 0.5 is at its side, y = x^2.

@@ -6,10 +6,51 @@
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
+#include "Engine/Loudspeaker/Curve.h"
 
 #include <algorithm>
 
 namespace excursion {
+
+namespace {
+
+/// Four degrees more for each law whose highest two still count: what they leave out is in no standard error.
+Model withRoom(Model model)
+{
+    constexpr int last = 2, more = 4;
+    std::vector<std::size_t> count;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        if (component.effect->law() && model.covariance.size() > 0
+            && component.operatingRange.degree + more <= curve::maximumDegree
+            && worthOfHighest(model, k, last) > last * priceOfCoefficient)
+            count.push_back(k);
+    }
+    for (const auto k : count)
+        model = withDegree(std::move(model), k, model.components[k].operatingRange.degree + more);
+    return model;
+}
+
+/// As many steps a sample as make errors of the integration small against what all lines tell together, not only
+/// against the noise of each: a search would follow them.
+int coherentSubsteps(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                     FitOptions options)
+{
+    constexpr int most = 2;         // doublings
+    constexpr double enough = 100;  // of the cost, by a doubling: the next one changes it by less than chance does
+    options.fedGradient = true;     // costs of simulations
+    auto before = quickSum(model, record, sections, options);
+    for (int n = 0; n < most; ++n) {
+        options.substeps *= 2;
+        const auto now = quickSum(model, record, sections, options);
+        if (!before || !now || std::abs(now->cost - before->cost) < enough)
+            break;
+        before = now;
+    }
+    return options.substeps;
+}
+
+}  // namespace
 
 FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd,
                            const Progress& progress)
@@ -19,12 +60,14 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
+    auto fine = options;
     const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool corrected, double from, double to) {
-        auto chosen = options;
+        auto chosen = fine;
         chosen.search = search;
         chosen.corrected = corrected;
         chosen.fedGradient = fedGradient && hasPeriods(record);
-        chosen.exactGradient = !fedGradient;
+        if (!fedGradient)
+            chosen.gradientSubsteps = options.substeps;
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
@@ -36,23 +79,27 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
+    if (record.noiseKnown && hasPeriods(record))
+        fine.substeps = coherentSubsteps(model, record, sections, options);
     // The last word has the simulation's own slopes, of which come the standard errors, too. At the noise those of fed
     // laws lead no further.
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
-        LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-6};
-        const bool straight = !canCorrect(model, record, sections);
-        if (straight)  // uncorrected steps stop in a bend of the valley unless the damping starts low
-            alongTheFloor.firstDamping = 1e-7;
-        if (warms(model)) {  // along the valley of two time constants a step is worth it that tells more than noise
-            constexpr double noise = 0.5;  // of the cost, half the sum of squares
-            alongTheFloor.costTolerance = noise / std::max(1.0, summary.finalCost);
-            if (straight)
-                alongTheFloor.maximumIterations = 15;
+        constexpr double noise = 0.5;  // of the cost: along the valleys a step is worth it that tells more
+        const LeastSquaresOptions alongTheFloor {
+            .maximumIterations = 6, .costTolerance = noise / std::max(1.0, summary.finalCost), .firstDamping = 1e-8};
+        auto higher = withRoom(model);
+        auto last = fine;
+        last.search = alongTheFloor;
+        last.corrected = true;
+        last.gradientSubsteps = options.substeps;
+        if (const auto next = fit(higher, record, sections, last, progress.part(0.5, 1.0)); next.usable()) {
+            model = std::move(higher);
+            summary = next;
         }
-        return run(alongTheFloor, false, true, 0.5, 1.0);
+        return summary;
     }
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);

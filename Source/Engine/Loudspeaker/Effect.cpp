@@ -32,6 +32,8 @@ std::vector<std::vector<double>> Effect::starts(const OperatingRange& operatingR
 
 std::vector<Part> Effect::parts(const OperatingRange&) const { return {}; }
 
+void Effect::follow(const OperatingRange&, const double*, double*) const {}
+
 std::vector<Restart> Effect::restarts(const OperatingRange&, const std::vector<double>&,
                                       const std::vector<Parameter>&) const
 {

@@ -198,6 +198,10 @@ public:
     virtual std::vector<Restart> restarts(const OperatingRange&, const std::vector<double>& start,
                                           const std::vector<Parameter>& base) const;
 
+    /// Where a step of a search leads, that by its slopes leads from `from` to `p`: changes p so that what the effect
+    /// does follows the slopes further. As it is: the slopes hold far enough.
+    virtual void follow(const OperatingRange&, const double* from, double* p) const;
+
     /// Whether these values are plausible for the effect, with a base of these parameters. If not, the effect stands
     /// for something else, and it is not named.
     virtual bool plausible(const OperatingRange&, const std::vector<Parameter>& own,

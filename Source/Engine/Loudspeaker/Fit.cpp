@@ -77,6 +77,54 @@ SearchCoordinates coordinatesOf(Model& model, const std::vector<Eigen::Index>& a
     return SearchCoordinates(std::move(own));
 }
 
+/// What damps the steps of shapes besides: where the record tells them no better than their prior, and many of them
+/// alike, slopes hold for less than a step to the least cost. What it tells well moves as freely as without.
+Eigen::VectorXd heldOf(const Model& model, const std::vector<Eigen::Index>& active, double variance)
+{
+    constexpr double times = 10.0;  // the prior's curvature
+    const auto all = parametersOf(model);
+    Eigen::VectorXd held = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+    for (Eigen::Index k = 0; k < held.size(); ++k) {
+        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
+        if (!p.strength && !p.even && std::isfinite(p.prior))
+            held[k] = times * variance / (p.prior * p.prior);
+    }
+    return held;
+}
+
+/// Where a step of a search leads: each effect that moves as a whole follows its own slopes (Effect::follow()).
+/// @param model  stands there afterwards
+Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active, SearchCoordinates& coordinates,
+                          const Eigen::VectorXd& from, const Eigen::VectorXd& step)
+{
+    const auto valuesOf = [](const Component& component) {
+        std::vector<double> values;
+        for (const auto& p : component.parameters)
+            values.push_back(p.value);
+        return values;
+    };
+    coordinates.place(from);
+    std::vector<std::vector<double>> before;
+    for (const auto& component : model.components)
+        before.push_back(valuesOf(component));
+    coordinates.place(from + step);
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
+        auto& component = model.components[k];
+        const auto last = first + static_cast<Eigen::Index>(component.parameters.size());
+        const auto moved = std::count_if(active.begin(), active.end(),
+                                         [&](Eigen::Index n) { return n >= first && n < last; });
+        auto values = valuesOf(component);
+        if (moved == last - first && values != before[k]) {
+            component.effect->follow(component.operatingRange, before[k].data(), values.data());
+            for (std::size_t j = 0; j < values.size(); ++j)
+                component.parameters[j].value = values[j];
+        }
+        first = last;
+    }
+    return coordinates.now();
+}
+
 /// The search of the model's parameters for the least error.
 /// @param corrected  steps are corrected by the slopes of their begin; errorOf tells slopes and spectra then
 FitSummary search(Model& model, const Record& record, const std::vector<std::size_t>& sections, const ErrorOf& errorOf,
@@ -118,6 +166,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
             noiseAtLast = onlyNoise;
         }
         coordinates.convert(sum, variance);
+        sum.held = heldOf(model, active, variance);
         if (corrected && gradient) {
             slopes.keep(std::move(fits));
             slopesOfKept = coordinates.slopes();
@@ -140,9 +189,12 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         coordinates.convert(prior, variance);
         return Eigen::VectorXd(pull.cwiseProduct(slopesOfKept) + prior.g);
     };
+    const auto retraction = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& step) {
+        return retracted(model, active, coordinates, from, step);
+    };
     static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, coordinates.lower(), coordinates.upper(),
                                                     options.search, progress,
-                                                    corrected ? ChordGradient(chord) : ChordGradient());
+                                                    corrected ? ChordGradient(chord) : ChordGradient(), retraction);
     coordinates.place(theta);
     if (!summary.usable())
         return summary;
@@ -270,8 +322,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         return summary;
     }
     run.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance);
-    if (options.exactGradient)
-        run.gradientSubsteps = run.substeps;
+    run.gradientSubsteps = options.gradientSubsteps;
     const bool slopesFed = options.fedGradient && hasPeriods(record);
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());

@@ -16,9 +16,9 @@ struct FitOptions {
     double simulationTolerance = 0.0;
     int substeps = 0;  ///< integration steps per sample; 0: chosen from the tolerance
     unsigned threads = 2;
-    /// sensitivities with as many steps a sample as the simulation: slower iterations, but fewer if some directions are
-    /// poorly determined
-    bool exactGradient = false;
+    /// steps a sample of the sensitivities; 0: as few as are stable. More make iterations slower, but fewer if some
+    /// directions are poorly determined
+    int gradientSubsteps = 0;
     /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
     /// few more are needed
     bool fedGradient = false;

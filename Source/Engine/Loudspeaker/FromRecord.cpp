@@ -66,7 +66,12 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
         if (!isNew)
             place->second = std::min(place->second, asked);
     }
-    return chooseSubsteps(model, loudest->input, record.sampleRate, options).substeps;
+    // From rest a short period does not come near the motion that it settles to.
+    constexpr std::size_t enough = 8192;
+    auto played = loudest->input;
+    while (loudest->periodic && played.size() < enough)
+        played.insert(played.end(), loudest->input.begin(), loudest->input.end());
+    return chooseSubsteps(model, played, record.sampleRate, options).substeps;
 }
 
 bool warms(const Model& model)

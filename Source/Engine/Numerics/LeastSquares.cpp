@@ -26,12 +26,22 @@ struct Box {
     VectorXd nearest(const VectorXd& theta) const { return theta.cwiseMax(lower).cwiseMin(upper); }
 };
 
-/// -(N + lambda diag N)^-1 pull, of these parameters alone.
-VectorXd dampedSolve(const std::vector<Index>& free, const Eigen::MatrixXd& N, const VectorXd& pull, double lambda)
+/// D, by which steps are damped: lambda diag N, and what is held.
+VectorXd dampingOf(const NormalEquations& at, double lambda)
 {
-    const VectorXd scale = VectorXd(N.diagonal())(free).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd scaled = scale.asDiagonal() * N(free, free) * scale.asDiagonal();
-    scaled.diagonal().array() += lambda;
+    VectorXd damping = lambda * at.N.diagonal();
+    if (at.held.size() > 0)
+        damping += at.held;
+    return damping;
+}
+
+/// -(N + D)^-1 pull, of these parameters alone.
+VectorXd dampedSolve(const std::vector<Index>& free, const NormalEquations& at, const VectorXd& pull,
+                     const VectorXd& damping)
+{
+    const VectorXd scale = VectorXd(at.N.diagonal())(free).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale.asDiagonal() * at.N(free, free) * scale.asDiagonal();
+    scaled.diagonal() += scale.cwiseAbs2().cwiseProduct(VectorXd(damping(free)));
     const VectorXd right = scale.cwiseProduct(VectorXd(pull(free)));
     return -scale.cwiseProduct(Eigen::LDLT<Eigen::MatrixXd>(scaled).solve(right));
 }
@@ -41,13 +51,14 @@ VectorXd dampedSolve(const std::vector<Index>& free, const Eigen::MatrixXd& N, c
 VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box& box, double lambda)
 {
     const VectorXd least = box.lower - theta, most = box.upper - theta;
+    const VectorXd damping = dampingOf(at, lambda);
     VectorXd d = VectorXd::Zero(theta.size());
     std::vector<Index> free;
     for (Index k = 0; k < theta.size(); ++k)
         if (at.N(k, k) > 0.0 && !(at.g[k] > 0.0 && least[k] >= 0.0) && !(at.g[k] < 0.0 && most[k] <= 0.0))
             free.push_back(k);
     while (!free.empty()) {
-        const VectorXd step = dampedSolve(free, at.N, at.g + at.N * d, lambda);  // with what the others have moved by
+        const VectorXd step = dampedSolve(free, at, at.g + at.N * d, damping);  // with what the others have moved by
         std::vector<Index> inside;
         for (std::size_t j = 0; j < free.size(); ++j) {
             const auto k = free[j];
@@ -66,18 +77,24 @@ VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box&
     return d;
 }
 
+struct Trial {
+    VectorXd d, theta;  // the step, and where it leads
+    double cost = std::numeric_limits<double>::infinity();
+};
+
 /// What a step d to a place within the box still lacks, by the slopes of its begin, of the parameters that moved
 /// freely.
-VectorXd correctionOf(const NormalEquations& at, const VectorXd& there, const VectorXd& d, const VectorXd& pull,
-                      const Box& box, double lambda)
+VectorXd correctionOf(const NormalEquations& at, const Trial& trial, const VectorXd& pull, const Box& box,
+                      double lambda)
 {
     std::vector<Index> free;
-    for (Index k = 0; k < there.size(); ++k)
-        if (d[k] != 0.0 && there[k] > box.lower[k] && there[k] < box.upper[k])
+    for (Index k = 0; k < trial.d.size(); ++k)
+        if (trial.d[k] != 0.0 && trial.theta[k] > box.lower[k] && trial.theta[k] < box.upper[k])
             free.push_back(k);
-    VectorXd a = VectorXd::Zero(there.size());
+    VectorXd a = VectorXd::Zero(trial.d.size());
+    const VectorXd damping = dampingOf(at, lambda);
     if (!free.empty())
-        a(free) = dampedSolve(free, at.N, pull + lambda * at.N.diagonal().cwiseProduct(d), lambda);
+        a(free) = dampedSolve(free, at, pull + damping.cwiseProduct(trial.d), damping);
     return a;
 }
 
@@ -101,13 +118,8 @@ public:
     double lambda() const { return lambda_; }
 
 private:
-    static constexpr double least = 1e-9, most = 1e9, fall = 3.0;
+    static constexpr double least = 1e-8, most = 1e9, fall = 3.0;
     double lambda_, rise_ = 2.0;
-};
-
-struct Trial {
-    VectorXd theta;
-    double cost = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
@@ -124,7 +136,8 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
 }
 
 SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const VectorXd& lower, const VectorXd& upper,
-                       const LeastSquaresOptions& options, const Progress& progress, const ChordGradient& chord)
+                       const LeastSquaresOptions& options, const Progress& progress, const ChordGradient& chord,
+                       const Retraction& retraction)
 {
     std::string invalid;
     if (!options.isValid(&invalid))
@@ -135,8 +148,10 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
     SearchSummary result;
     if (!beginSearch(evaluate, theta, at, result))
         return result;
-    const auto tried = [&](const VectorXd& where) {
-        Trial trial {box.nearest(where)};
+    const auto tried = [&](VectorXd d) {
+        Trial trial;
+        trial.theta = box.nearest(retraction ? retraction(theta, d) : VectorXd(theta + d));
+        trial.d = std::move(d);
         NormalEquations there;
         if (trial.theta.allFinite() && evaluate(trial.theta, false, there) && std::isfinite(there.cost))
             trial.cost = there.cost;
@@ -145,8 +160,8 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
     const auto step = [&](double lambda) {
         const VectorXd d = dampedStep(at, theta, box, lambda);
         if (d.isZero(0.0))
-            return Trial {theta, at.cost};
-        auto trial = tried(theta + d);
+            return Trial {d, theta, at.cost};
+        auto trial = tried(d);
         if (!chord)
             return trial;
         constexpr int mostCorrections = 4;
@@ -160,8 +175,7 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
             const VectorXd pull = chord();
             if (pull.size() == 0)
                 break;
-            const VectorXd made = trial.theta - theta;
-            auto next = tried(trial.theta + correctionOf(at, trial.theta, made, pull, box, lambda));
+            auto next = tried(box.nearest(theta + trial.d + correctionOf(at, trial, pull, box, lambda)) - theta);
             if (!(next.cost < trial.cost))
                 break;
             const double won = trial.cost - next.cost;

@@ -31,21 +31,25 @@ using NormalEvaluation = std::function<bool(const Eigen::VectorXd& theta, bool g
 /// it is not known.
 using ChordGradient = std::function<Eigen::VectorXd()>;
 
+/// Where a step d from theta leads, theta + d to first order and within the bounds: along a known bend of the valley.
+using Retraction = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, const Eigen::VectorXd& d)>;
+
 /// Levenberg and Marquardt's search within bounds ([B 4.3.1]) on a problem that is only known through its normal
 /// equations, so that long records never stand in memory as one Jacobian:
-///     (N + lambda diag N) d = -g,   theta + d within the bounds;
+///     (N + D) d = -g,   D = lambda diag N + diag held,   theta + d within the bounds;
 /// a parameter that a step would take out stops at its bound, and the step of the others is solved for again. The
 /// damping lambda falls before each step and rises until one lowers the cost at all: slopes cost more than
 /// steps, and in a curved valley the boldest step that goes down leads further than the one that goes down most. Where
 /// the chord's gradient is known, a step that does not keep its promise is corrected with the slopes that are there
 /// (a chord method), as long as that brings it down by half: parameters that the residuals hold fast follow those that
 /// they hardly see round the bend of a valley, at the price of an evaluation without slopes,
-///     (N + lambda diag N) a = -(J^T r(theta + d) + lambda diag N d),   d <- d + a.
+///     (N + D) a = -(J^T r(theta + d) + D d),   d <- d + a.
 /// Where there are no bounds and a triangular factor can be had, search() squares no condition number.
 /// @param theta  start, then result; a start out of bounds is moved to them
+/// @param retraction  theta + d unless given
 /// @returns costs r^T r. Throws Error (usage) for options that make no sense, (cancelled) when progress says so.
 SearchSummary minimize(const NormalEvaluation&, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
                        const Eigen::VectorXd& upper, const LeastSquaresOptions&, const Progress& = {},
-                       const ChordGradient& = {});
+                       const ChordGradient& = {}, const Retraction& = {});
 
 }  // namespace excursion

@@ -16,6 +16,8 @@ struct NormalEquations {
     double rows = 0.0;  ///< number of real residuals
     /// of the cost, what is noise for sure: a search takes no falls relative to it
     double sure = 0.0;
+    /// diagonal by which a search damps its steps besides, for what r hardly tells; empty: none
+    Eigen::VectorXd held;
 
     NormalEquations() = default;
     explicit NormalEquations(const Eigen::VectorXd& r);

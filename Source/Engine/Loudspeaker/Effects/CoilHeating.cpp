@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Effects/Effects.h"
 
+#include "Engine/Numerics/LeastSquares.h"
+
+#include <Eigen/Core>
+
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +55,11 @@ public:
                 time("slow", 4.0, 0.5, 100.0)};
     }
 
+    /// A take tells how far the resistance has risen so long after a step of power,
+    ///     r (1 - exp(-t/tau_1) + share (1 - exp(-t/tau_2))),
+    /// and tells the four numbers hardly apart. That rise follows the slopes: a step keeps to it as well as it can.
+    void follow(const OperatingRange& e, const double* from, double* p) const override;
+
     int memorySize(const OperatingRange&) const override { return 2; }
     int coefficientCount(const OperatingRange&) const override { return 4; }
 
@@ -76,6 +85,56 @@ public:
         sum.drop += rise * at.i;
     }
 };
+
+using Rises = Eigen::Matrix<double, 9, 1>;
+using Slopes = Eigen::Matrix<double, 9, 4>;
+
+/// The rise at times from a hundredth of the take to its length, in ohm/W, and its slopes by the four parameters.
+void riseOf(const OperatingRange& e, const double* p, Rises& rise, Slopes& slopes)
+{
+    for (int j = 0; j < rise.size(); ++j) {
+        const double t = e.duration * std::pow(10.0, -0.25 * j);
+        const auto stage = [&](double logTime, double& slope) {
+            const double ratio = t / std::pow(10.0, logTime), left = std::exp(-ratio);
+            slope = -std::numbers::ln10 * ratio * left;
+            return 1.0 - left;
+        };
+        double bySlow = 0.0, byFast = 0.0;
+        const double fast = stage(p[1], byFast), slow = stage(p[3], bySlow);
+        rise[j] = p[0] * (fast + p[2] * slow);
+        slopes.row(j) << fast + p[2] * slow, p[0] * byFast, p[0] * slow, p[0] * p[2] * bySlow;
+    }
+}
+
+void CoilHeating::follow(const OperatingRange& e, const double* from, double* p) const
+{
+    if (!(from[0] > 0.0 && p[0] > 0.0))
+        return;
+    Rises wanted, rise;
+    Slopes slopes;
+    riseOf(e, from, wanted, slopes);
+    wanted += slopes * (Eigen::Map<const Eigen::Vector4d>(p) - Eigen::Map<const Eigen::Vector4d>(from));
+    const auto bounds = parameters(e);
+    Eigen::VectorXd at = Eigen::Map<const Eigen::Vector4d>(p), lower(4), upper(4);
+    for (int k = 0; k < 4; ++k) {
+        lower[k] = bounds[static_cast<std::size_t>(k)].lower;
+        upper[k] = bounds[static_cast<std::size_t>(k)].upper;
+    }
+    const double scale = wanted.norm();
+    if (!(scale > 0.0) || !at.allFinite())
+        return;
+    minimize(
+        [&](const Eigen::VectorXd& where, bool gradient, NormalEquations& sum) {
+            riseOf(e, where.data(), rise, slopes);
+            const Eigen::VectorXd r = (rise - wanted) / scale;
+            sum = NormalEquations(r);
+            if (gradient)
+                sum.differentiateBy(slopes / scale, r);
+            return true;
+        },
+        at, lower, upper, {.maximumIterations = 30, .costTolerance = 1e-6, .firstDamping = 1e-6});
+    Eigen::Map<Eigen::Vector4d>(p, 4) = at;
+}
 
 }  // namespace
 
