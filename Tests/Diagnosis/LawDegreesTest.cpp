@@ -3,12 +3,14 @@
 
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 using namespace excursion;
@@ -87,4 +89,20 @@ TEST_CASE("A law keeps coefficients that a simulation misses, whatever the covar
     lowerAsItPays(strong.model, strong.summary, strong.record, estimationSections(strong.record), strong.options);
     CHECK(strong.model.components[1].operatingRange.degree == 10);
     CHECK(parameterVector(strong.model) == parameterVector(before));
+}
+
+TEST_CASE("The last fit gives a law the coefficients that it lacks, and no others", "[diagnosis]")
+{
+    for (const auto& [effect, strength, degree] : {std::tuple {"force-factor", 0.6, 10}, {"stiffness", 0.2, 6}}) {
+        CAPTURE(effect);
+        Bent bent(effect, 6, strength);
+        const auto before = bent.summary;
+        const auto after = fitBySimulation(bent.model, bent.record, {}, true);  // with steps of its own choice
+        REQUIRE(after.usable());
+        CHECK(after.substeps > 0);
+        CHECK(after.finalCost <= before.finalCost + 1.0);
+        CHECK(bent.model.components[1].operatingRange.degree == degree);
+        for (const auto& p : bent.model.components[1].parameters)
+            CHECK((!p.free || std::isfinite(p.standardError)));
+    }
 }

@@ -68,6 +68,14 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
     return summary;
 }
 
+/// With as many steps a sample as the model was fitted with, which may be more than the noise of each line asks for.
+Comparison compareAsFitted(const Rung& rung, const Record& record)
+{
+    return compare(rung.model, record, {rung.fit.substeps, true});
+}
+
+Comparison compareAsFitted(const Rung& rung, const Spectra& spectra) { return compare(rung.model, spectra); }
+
 std::variant<Record, Spectra> dataOf(const PreparedTake& take)
 {
     if (const auto* spectra = take.asResponses())
@@ -286,7 +294,7 @@ void Improvement::use(Data data)
 Rung Improvement::judged(Rung rung, const Data& data, const Progress& progress) const
 {
     const auto judge = [&](const Progress& part) {
-        rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data);
+        rung.comparison = std::visit([&](const auto& d) { return compareAsFitted(rung, d); }, data);
         rung.diagnosis = std::visit(
             [&](const auto& d) { return diagnose(rung.model, d, rung.comparison, options_.diagnose, part); }, data);
     };

@@ -14,40 +14,54 @@ namespace excursion {
 
 namespace {
 
-/// Four degrees more for each law whose highest two still count: what they leave out is in no standard error.
+/// Four degrees more for each law whose highest two still count: what they leave out is in no standard error. Those
+/// that do not pay are to be taken back (lowerAsItPays()).
 Model withRoom(Model model)
 {
     constexpr int last = 2, more = 4;
-    std::vector<std::size_t> count;
+    std::vector<std::size_t> counting;
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
-        if (component.effect->law() && model.covariance.size() > 0
-            && component.operatingRange.degree + more <= curve::maximumDegree
-            && worthOfHighest(model, k, last) > last * priceOfCoefficient)
-            count.push_back(k);
+        if (!component.effect->law() || model.covariance.size() == 0 || component.operatingRange.degree <= last
+            || component.operatingRange.degree + more > curve::maximumDegree)
+            continue;
+        const double worth = worthOfHighest(model, k, last);
+        if (std::isfinite(worth) && worth > last * priceOfCoefficient)
+            counting.push_back(k);
     }
-    for (const auto k : count)
-        model = withDegree(std::move(model), k, model.components[k].operatingRange.degree + more);
+    for (const auto k : counting) {
+        const int degree = model.components[k].operatingRange.degree + more;
+        model = withDegree(std::move(model), k, degree);
+    }
     return model;
 }
 
 /// As many steps a sample as make errors of the integration small against what all lines tell together, not only
 /// against the noise of each: a search would follow them.
+/// @param options  with steps a sample
 int coherentSubsteps(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                      FitOptions options)
 {
-    constexpr int most = 2;         // doublings
-    constexpr double enough = 100;  // of the cost, by a doubling: the next one changes it by less than chance does
-    options.fedGradient = true;     // costs of simulations
+    constexpr int mostDoublings = 2, most = 64;
+    // Of the cost, in units of the residuals' variance: the error falls to a fortieth and less by a doubling.
+    constexpr double enough = 100.0, little = 3.0;
+    options.fedGradient = true;  // costs of simulations
+    int chosen = options.substeps;
     auto before = quickSum(model, record, sections, options);
-    for (int n = 0; n < most; ++n) {
+    for (int n = 0; n < mostDoublings && before && 2 * options.substeps <= most; ++n) {
         options.substeps *= 2;
         const auto now = quickSum(model, record, sections, options);
-        if (!before || !now || std::abs(now->cost - before->cost) < enough)
+        if (!now)
+            break;
+        const double change = std::abs(now->cost - before->cost) / std::max(1.0, now->cost / std::max(1.0, now->rows));
+        if (change < little)
+            break;
+        chosen = options.substeps;
+        if (change < enough)
             break;
         before = now;
     }
-    return options.substeps;
+    return chosen;
 }
 
 }  // namespace
@@ -61,13 +75,16 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
     auto fine = options;
+    if (fine.substeps == 0)
+        fine.substeps = substepsFor(model, record, options.simulationTolerance);
+    const int coarse = fine.substeps;
     const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool corrected, double from, double to) {
         auto chosen = fine;
         chosen.search = search;
         chosen.corrected = corrected;
         chosen.fedGradient = fedGradient && hasPeriods(record);
         if (!fedGradient)
-            chosen.gradientSubsteps = options.substeps;
+            chosen.gradientSubsteps = coarse;
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
@@ -80,7 +97,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!near(summary))
         return summary;
     if (record.noiseKnown && hasPeriods(record))
-        fine.substeps = coherentSubsteps(model, record, sections, options);
+        fine.substeps = coherentSubsteps(model, record, sections, fine);
     // The last word has the simulation's own slopes, of which come the standard errors, too. At the noise those of fed
     // laws lead no further.
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
@@ -91,13 +108,21 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         const LeastSquaresOptions alongTheFloor {
             .maximumIterations = 6, .costTolerance = noise / std::max(1.0, summary.finalCost), .firstDamping = 1e-8};
         auto higher = withRoom(model);
-        auto last = fine;
-        last.search = alongTheFloor;
-        last.corrected = true;
-        last.gradientSubsteps = options.substeps;
-        if (const auto next = fit(higher, record, sections, last, progress.part(0.5, 1.0)); next.usable()) {
-            model = std::move(higher);
-            summary = next;
+        if (canCorrect(model, record, sections) && !canCorrect(higher, record, sections))
+            higher = model;
+        for (auto* one : {&higher, &model}) {
+            auto last = fine;
+            last.search = alongTheFloor;
+            last.corrected = true;
+            last.fed = last.fedGradient = false;
+            last.gradientSubsteps = coarse;
+            auto next = fit(*one, record, sections, last, progress.part(0.5, 1.0));
+            if (!next.usable())
+                continue;
+            lowerAsItPays(*one, next, record, sections, fine);
+            if (one != &model)
+                model = std::move(*one);
+            return next;
         }
         return summary;
     }

@@ -271,7 +271,7 @@ bool FitOptions::isValid(std::string* reason) const
         return false;
     if (!(simulationTolerance >= 0.0 && simulationTolerance < 1.0))
         return refuse(reason, "the tolerance of the simulation must lie between 0 (chosen from the noise) and 1");
-    if (substeps < 0 || threads < 1)
+    if (substeps < 0 || gradientSubsteps < 0 || threads < 1)
         return refuse(reason, "steps a sample and threads are positive");
     return true;
 }

@@ -69,7 +69,7 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
     // From rest a short period does not come near the motion that it settles to.
     constexpr std::size_t enough = 8192;
     auto played = loudest->input;
-    while (loudest->periodic && played.size() < enough)
+    while (loudest->periodic && !played.empty() && played.size() < enough)
         played.insert(played.end(), loudest->input.begin(), loudest->input.end());
     return chooseSubsteps(model, played, record.sampleRate, options).substeps;
 }

@@ -46,7 +46,7 @@ VectorXd dampedSolve(const std::vector<Index>& free, const NormalEquations& at, 
     return -scale.cwiseProduct(Eigen::LDLT<Eigen::MatrixXd>(scaled).solve(right));
 }
 
-/// min |r + J d|^2 + lambda |d/scale|^2 with theta + d in the box: what would leave it stops at its side, and the
+/// min |r + J d|^2 + d^T D d with theta + d in the box: what would leave it stops at its side, and the
 /// others make good for that.
 VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box& box, double lambda)
 {
