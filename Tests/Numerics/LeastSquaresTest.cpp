@@ -220,36 +220,51 @@ TEST_CASE("What is noise for sure neither stops a search early nor changes what 
     CHECK(late.converged());
 }
 
-TEST_CASE("Steps that their own slopes correct go round the bend of a valley in fewer of them", "[least-squares]")
-{
-    // Rosenbrock's valley, ten times as steep: r = (100 (y - x^2), 1 - x).
-    int slopes = 0;
-    Eigen::Matrix2d J;
-    Eigen::Vector2d last;
-    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        const Eigen::Vector2d r(100.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]);
-        sum = NormalEquations(r);
-        last = r;
-        if (gradient) {
-            ++slopes;
-            J << -200.0 * at[0], 100.0, -1.0, 0.0;
-            sum.differentiateBy(J, r);
-        }
-        return true;
-    };
-    const auto chord = [&]() -> Eigen::VectorXd { return J.transpose() * last; };
-    const auto lower = two(-infinite, -infinite), upper = two(infinite, infinite);
-    const auto stepsFor = [&](const ChordGradient& gradient) {
+namespace {
+
+/// Rosenbrock's valley, ten times as steep: r = (100 (y - x^2), 1 - x).
+class Valley {
+public:
+    /// How many slopes a search asks for until it is at the valley's end.
+    /// @param top  the highest y
+    int slopesFor(const ChordGradient& chord, const Retraction& retraction, double top)
+    {
+        const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+            last_ = Eigen::Vector2d(100.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]);
+            sum = NormalEquations(last_);
+            if (gradient) {
+                ++slopes_;
+                J_ << -200.0 * at[0], 100.0, -1.0, 0.0;
+                sum.differentiateBy(J_, last_);
+            }
+            return true;
+        };
         auto at = two(-1.2, 1.0);
-        slopes = 0;
-        const auto summary = minimize(evaluate, at, lower, upper, exact(), {}, gradient);
+        slopes_ = 0;
+        const auto summary = minimize(evaluate, at, two(-infinite, -infinite), two(infinite, top), exact(), {}, chord,
+                                      retraction);
         INFO(summary.message);
         CHECK(summary.usable());
         CHECK(at[0] == Approx(1.0).epsilon(1e-6));
         CHECK(at[1] == Approx(1.0).epsilon(1e-6));
-        return slopes;
-    };
-    const int plain = stepsFor({}), corrected = stepsFor(chord);
+        return slopes_;
+    }
+
+    Eigen::VectorXd chord() const { return J_.transpose() * last_; }
+
+private:
+    int slopes_ = 0;
+    Eigen::Matrix2d J_;
+    Eigen::Vector2d last_;
+};
+
+}  // namespace
+
+TEST_CASE("Steps that their own slopes correct go round the bend of a valley in fewer of them", "[least-squares]")
+{
+    Valley valley;
+    const auto stepsFor = [&](const ChordGradient& chord) { return valley.slopesFor(chord, {}, infinite); };
+    const int plain = stepsFor({}), corrected = stepsFor([&] { return valley.chord(); });
     INFO(plain << " steps, " << corrected << " that are corrected");
     CHECK(2 * corrected < plain);
     CHECK(stepsFor([] { return Eigen::VectorXd(); }) == plain);
@@ -257,31 +272,11 @@ TEST_CASE("Steps that their own slopes correct go round the bend of a valley in 
 
 TEST_CASE("Steps along a bend that is known need fewer slopes", "[least-squares]")
 {
-    // Rosenbrock's valley, y = x^2 where it is lowest.
-    int slopes = 0;
-    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        const Eigen::Vector2d r(100.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]);
-        sum = NormalEquations(r);
-        slopes += gradient;
-        if (gradient)
-            sum.differentiateBy(Eigen::Matrix2d {{-200.0 * at[0], 100.0}, {-1.0, 0.0}}, r);
-        return true;
-    };
     const auto bent = [](const Eigen::VectorXd& from, const Eigen::VectorXd& d) -> Eigen::VectorXd {
-        return two(from[0] + d[0], from[1] + d[1] + d[0] * d[0]);
+        return two(from[0] + d[0], from[1] + d[1] + d[0] * d[0]);  // y = x^2 where the valley is lowest
     };
-    const auto slopesBy = [&](const Retraction& retraction) {
-        auto at = two(-1.2, 1.0);
-        slopes = 0;
-        const auto summary = minimize(evaluate, at, two(-infinite, -infinite), two(infinite, 1.5), exact(), {}, {},
-                                      retraction);
-        INFO(summary.message);
-        CHECK(summary.usable());
-        CHECK(at[0] == Approx(1.0).epsilon(1e-6));
-        CHECK(at[1] == Approx(1.0).epsilon(1e-6));
-        return slopes;
-    };
-    const int straight = slopesBy({}), along = slopesBy(bent);
+    Valley valley;
+    const int straight = valley.slopesFor({}, {}, 1.5), along = valley.slopesFor({}, bent, 1.5);
     INFO(straight << " slopes, " << along << " along the bend");
     CHECK(2 * along < straight);
 }

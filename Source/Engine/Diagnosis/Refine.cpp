@@ -78,18 +78,19 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (fine.substeps == 0)
         fine.substeps = substepsFor(model, record, options.simulationTolerance);
     const int coarse = fine.substeps;
-    const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool corrected, double from, double to) {
+    const auto run = [&](Model& which, const LeastSquaresOptions& search, bool fedGradient, bool corrected, double from,
+                         double to) {
         auto chosen = fine;
         chosen.search = search;
         chosen.corrected = corrected;
         chosen.fedGradient = fedGradient && hasPeriods(record);
         if (!fedGradient)
             chosen.gradientSubsteps = coarse;
-        return fit(model, record, sections, chosen, progress.part(from, to));
+        return fit(which, record, sections, chosen, progress.part(from, to));
     };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         // the last digits lie along valleys
-        return run({iterations, tolerance}, fedGradient, fedGradient && tolerance < 1e-4, from, to);
+        return run(model, {iterations, tolerance}, fedGradient, fedGradient && tolerance < 1e-4, from, to);
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
     if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
@@ -111,12 +112,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         if (canCorrect(model, record, sections) && !canCorrect(higher, record, sections))
             higher = model;
         for (auto* one : {&higher, &model}) {
-            auto last = fine;
-            last.search = alongTheFloor;
-            last.corrected = true;
-            last.fed = last.fedGradient = false;
-            last.gradientSubsteps = coarse;
-            auto next = fit(*one, record, sections, last, progress.part(0.5, 1.0));
+            auto next = run(*one, alongTheFloor, false, true, 0.5, 1.0);
             if (!next.usable())
                 continue;
             lowerAsItPays(*one, next, record, sections, fine);

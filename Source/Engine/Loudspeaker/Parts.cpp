@@ -134,7 +134,6 @@ void rest(Component& component, const Part& part)
     }
 }
 
-/// How much of its cost a part must take away: more than chance does at the best of a hundred places.
 double worthwhile(double left, const std::vector<ResponseTarget>& targets)
 {
     constexpr double pays = 40.0;    // times the mean square of what is left
