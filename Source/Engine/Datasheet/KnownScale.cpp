@@ -87,8 +87,8 @@ ScaledModel withKnown(Model model, const KnownScale& known)
         area.value = *known.coneArea;
         area.standardError = std::numeric_limits<double>::quiet_NaN();
         area.free = false;
-        if (const auto count = model.covariance.rows(); count > 0) {
-            const auto place = count - static_cast<Eigen::Index>(model.path.parameters.size());
+        if (model.covariance.size() > 0) {
+            const auto place = firstParameterOf(model, model.components.size());
             model.covariance.row(place).setZero();
             model.covariance.col(place).setZero();
         }

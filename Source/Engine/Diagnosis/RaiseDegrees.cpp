@@ -69,9 +69,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
 
 std::vector<Eigen::Index> highestCoefficients(const Model& model, std::size_t k, int by)
 {
-    Eigen::Index first = 0;
-    for (std::size_t n = 0; n < k; ++n)
-        first += static_cast<Eigen::Index>(model.components[n].parameters.size());
+    const auto first = firstParameterOf(model, k);
     const auto& component = model.components[k];
     const auto lower = withDegree(model, k, component.operatingRange.degree - by).components[k].parameters;
     std::vector<Eigen::Index> highest;

@@ -148,6 +148,8 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
             findPartsAnew(model, record, sections, quick);
         else
             wakeShapes(model, record, sections, quick);
+        if (record.noiseKnown && summary.chiSquaredPerValue < nearNoise)
+            findUsualShapes(model, record, sections, quick);
         quick.search = {15, 1e-4};
         if (!quick.fedGradient)
             summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));

@@ -28,12 +28,9 @@ std::vector<Eigen::Index> placesIn(const Model& whole, const Model& part)
 {
     std::vector<Eigen::Index> places;
     for (const auto& component : part.components) {
-        Eigen::Index place = 0;
-        for (const auto& one : whole.components) {
-            if (one.effect == component.effect)
-                break;
-            place += static_cast<Eigen::Index>(one.parameters.size());
-        }
+        const auto same = std::find_if(whole.components.begin(), whole.components.end(),
+                                       [&](const Component& one) { return one.effect == component.effect; });
+        auto place = firstParameterOf(whole, static_cast<std::size_t>(same - whole.components.begin()));
         for (std::size_t k = 0; k < component.parameters.size(); ++k)
             places.push_back(place++);
     }
@@ -47,13 +44,14 @@ void takeErrors(Model& part, const std::vector<bool>& held, const Model& whole)
         return;
     const auto places = placesIn(whole, part);
     const auto all = parametersOf(part);
+    const double share = whole.overdispersion / part.overdispersion;
     for (std::size_t k = 0; k < places.size(); ++k)
         if (held[k]) {
             const auto row = static_cast<Eigen::Index>(k);
             for (std::size_t j = 0; j < places.size(); ++j)
                 if (held[j])
-                    part.covariance(row, static_cast<Eigen::Index>(j)) = whole.covariance(places[k], places[j]);
-            all[k]->standardError = std::sqrt(part.covariance(row, row));
+                    part.covariance(row, static_cast<Eigen::Index>(j)) = share * whole.covariance(places[k], places[j]);
+            all[k]->standardError = std::sqrt(part.overdispersion * part.covariance(row, row));
         }
 }
 

@@ -32,7 +32,17 @@ std::set<std::string> setOf(const Model& model)
     return {ids.begin(), ids.end()};
 }
 
-/// The model with one more effect; of infinite error where that cannot be fitted.
+/// The number of effects that stand for something else.
+auto strangersIn(const Model& model)
+{
+    std::size_t count = 0;
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        count += isItself(model, k) ? 0 : 1;
+    return count;
+}
+
+/// The model with one more effect; of infinite error where that cannot be fitted. What has become itself in it may have
+/// cost a little (refineByResponse()).
 Found withOneMore(const Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
     Found found {model};
@@ -41,7 +51,8 @@ Found withOneMore(const Model& model, const Effect& effect, const std::vector<Re
     found.errorDb = responseErrorDb(found.model, targets);
     auto refined = found.model;
     if (refineByResponse(refined, targets).usable())
-        if (const double errorDb = responseErrorDb(refined, targets); errorDb < found.errorDb)
+        if (const double errorDb = responseErrorDb(refined, targets);
+            errorDb < found.errorDb || strangersIn(refined) < strangersIn(found.model))
             found = {std::move(refined), errorDb};
     return found;
 }

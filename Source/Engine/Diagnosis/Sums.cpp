@@ -65,9 +65,7 @@ double predictedCost(const NormalEquations& e, const Eigen::VectorXd& d)
 
 std::vector<Eigen::Index> strengthPlaces(const Model& model, std::size_t k, const std::vector<Eigen::Index>& active)
 {
-    Eigen::Index first = 0;
-    for (std::size_t j = 0; j < k; ++j)
-        first += static_cast<Eigen::Index>(model.components[j].parameters.size());
+    const auto first = firstParameterOf(model, k);
     std::vector<Eigen::Index> positions;
     for (std::size_t j = 0; j < model.components[k].parameters.size(); ++j)
         if (const auto& p = model.components[k].parameters[j]; p.strength && p.free) {

@@ -113,20 +113,19 @@ Drift follow(Model before, const std::vector<std::string>& names, const Search& 
             break;
     }
     // What was held is as well known as it was, what was fitted as it is now.
-    Eigen::MatrixXd covariance;
     if (before.covariance.size() > 0) {
-        covariance = factors.asDiagonal() * before.covariance * factors.asDiagonal();
+        Eigen::MatrixXd covariance = before.overdispersion
+                                     * (factors.asDiagonal() * before.covariance * factors.asDiagonal());
         for (const auto k : moved) {
             covariance.row(k).setZero();
             covariance.col(k).setZero();
         }
         for (const auto r : moved)
             for (const auto c : moved)
-                covariance(r, c) = drift.model.covariance(r, c);
-    } else {
-        covariance = drift.model.covariance;
+                covariance(r, c) = drift.model.overdispersion * drift.model.covariance(r, c);
+        drift.model.covariance = std::move(covariance);
+        drift.model.overdispersion = 1.0;
     }
-    drift.model.covariance = std::move(covariance);
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (!all[k]->free)
             all[k]->standardError = factors[static_cast<Eigen::Index>(k)] * old[k]->standardError;

@@ -41,6 +41,7 @@ public:
             if (options.gradient && !active.empty()) {
                 const auto J = columns(c, active, heard);
                 normal.differentiateBy(J, r);
+                fit.pull(residual_.pulls(J, r));
                 if (options.slopes)
                     fit.slopes.push_back(J.cast<float>());
             }

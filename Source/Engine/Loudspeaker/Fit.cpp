@@ -108,10 +108,9 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     for (const auto& component : model.components)
         before.push_back(valuesOf(component));
     coordinates.place(from + step);
-    Eigen::Index first = 0;
     for (std::size_t k = 0; k < model.components.size(); ++k) {
         auto& component = model.components[k];
-        const auto last = first + static_cast<Eigen::Index>(component.parameters.size());
+        const auto first = firstParameterOf(model, k), last = firstParameterOf(model, k + 1);
         const auto moved = std::count_if(active.begin(), active.end(),
                                          [&](Eigen::Index n) { return n >= first && n < last; });
         auto values = valuesOf(component);
@@ -120,7 +119,6 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
             for (std::size_t j = 0; j < values.size(); ++j)
                 component.parameters[j].value = values[j];
         }
-        first = last;
     }
     return coordinates.now();
 }
@@ -145,6 +143,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     std::vector<SectionFit> tried;  // where slopes were not asked for, last
     KeptSlopes slopes(record, sections);
     NormalEquations last;                                     // at the last place with slopes, by parameters
+    Eigen::MatrixXd lastPulls;                                // there
     bool noiseAtLast = false;                                 // there
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
@@ -163,6 +162,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         addPrior(model, active, sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
             last = sum;
+            lastPulls = pullsOf(fits, record, sections);
             noiseAtLast = onlyNoise;
         }
         coordinates.convert(sum, variance);
@@ -201,14 +201,16 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     if (summary.termination == Termination::noSlopes)
         summary.onlyNoise = noiseAtLast;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
-    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
+    const double scatter = std::max(1.0, summary.chiSquaredPerValue);
+    const auto covariance = covarianceOf(last.N, scatter);
+    model.overdispersion = std::max(1.0, overdispersionOf(last.N, lastPulls) / scatter);
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         for (Eigen::Index c = 0; c < P; ++c)
             model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
-        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(covariance(r, r));
+        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(model.overdispersion * covariance(r, r));
     }
     return summary;
 }

@@ -57,9 +57,7 @@ bool isSeen(const Model& model, std::size_t component)
     constexpr double sure = 4.0;  // standard errors, which take neighbouring points for independent
     if (model.covariance.size() == 0 || !isItself(model, component))
         return false;
-    Eigen::Index first = 0;
-    for (std::size_t k = 0; k < component; ++k)
-        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
+    const auto first = firstParameterOf(model, component);
     const auto& parameters = model.components[component].parameters;
     std::vector<Eigen::Index> shapes, strengths;
     for (std::size_t k = 0; k < parameters.size(); ++k) {

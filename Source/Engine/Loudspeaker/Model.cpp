@@ -217,6 +217,14 @@ Model withDegree(Model model, std::size_t component, int degree)
 std::vector<Parameter*> parametersOf(Model& model) { return collect<Parameter*>(model); }
 std::vector<const Parameter*> parametersOf(const Model& model) { return collect<const Parameter*>(model); }
 
+Eigen::Index firstParameterOf(const Model& model, std::size_t k)
+{
+    Eigen::Index first = 0;
+    for (std::size_t n = 0; n < k; ++n)
+        first += static_cast<Eigen::Index>(model.components[n].parameters.size());
+    return first;
+}
+
 Eigen::VectorXd parameterVector(const Model& model)
 {
     const auto all = parametersOf(model);

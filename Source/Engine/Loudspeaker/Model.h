@@ -52,6 +52,9 @@ struct Model {
     Component path;                     ///< radiation(): Sd in m^2 and tau in s
     double microphoneDistance = 1.0;    ///< d, m
     Eigen::MatrixXd covariance;         ///< of parameterVector(); empty when unknown
+    /// by which, as variance, errors of the parameters exceed what the covariance says, as the model leaves more than
+    /// noise (overdispersionOf()); at least 1
+    double overdispersion = 1.0;
 
     const Component& base() const { return components.front(); }
     bool electrical() const { return base().effect->electrical(); }
@@ -98,6 +101,8 @@ Model withDegree(Model, std::size_t component, int degree);
 /// All parameters one after the other: components in order, then the path.
 std::vector<Parameter*> parametersOf(Model&);
 std::vector<const Parameter*> parametersOf(const Model&);
+/// The place of component k's first parameter among them; that of the path's for k = number of components.
+Eigen::Index firstParameterOf(const Model&, std::size_t k);
 Eigen::VectorXd parameterVector(const Model&);
 void setParameterVector(Model&, const Eigen::VectorXd&);
 

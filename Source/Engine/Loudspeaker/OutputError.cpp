@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace excursion {
 namespace {
@@ -76,6 +77,7 @@ public:
                 return fit;
             for (std::size_t c = 0; c < channels; ++c) {
                 fit.channels[c].differentiateBy(J[c], residual[c]);
+                fit.pull(residual_.pulls(J[c], residual[c]));
                 if (options_.slopes)
                     fit.slopes.push_back(J[c].cast<float>());
             }
@@ -199,6 +201,39 @@ std::optional<NormalEquations> sumOf(const std::vector<SectionFit>& fits)
             sum.add(channel);
     }
     return sum;
+}
+
+void SectionFit::pull(const Eigen::MatrixXd& more)
+{
+    if (pulls.size() == 0)
+        pulls = more;
+    else
+        pulls += more;
+}
+
+Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& record,
+                        const std::vector<std::size_t>& sections)
+{
+    std::vector<Eigen::MatrixXd> groups;
+    std::map<int, std::size_t> groupOf;  // a level's
+    for (std::size_t s = 0; s < fits.size(); ++s) {
+        if (fits[s].pulls.size() == 0)
+            continue;
+        const int level = record.sections[sections[s]].level;
+        if (const auto known = groupOf.find(level); level >= 0 && known != groupOf.end()) {
+            groups[known->second] += fits[s].pulls;
+            continue;
+        }
+        groupOf[level] = groups.size();
+        groups.push_back(fits[s].pulls);
+    }
+    if (groups.empty())
+        return {};
+    const auto rows = groups.front().rows(), columns = groups.front().cols();
+    Eigen::MatrixXd pulls(rows, columns * static_cast<Eigen::Index>(groups.size()));
+    for (std::size_t k = 0; k < groups.size(); ++k)
+        pulls.middleCols(static_cast<Eigen::Index>(k) * columns, columns) = groups[k];
+    return pulls;
 }
 
 double worstPower(const std::vector<SectionFit>& fits)

@@ -21,6 +21,9 @@ struct SectionFit {
     std::vector<ErrorPower> power;                             ///< [channel]
     std::vector<std::vector<std::complex<double>>> predicted;  ///< [channel][line], if asked for
     std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, if asked for
+    Eigen::MatrixXd pulls;                                     ///< of all channels (Residual::pulls()), with N and g
+
+    void pull(const Eigen::MatrixXd& ofChannel);  ///< adds to `pulls`
 };
 
 struct OutputErrorOptions {
@@ -51,6 +54,11 @@ std::vector<SectionFit> outputError(const Model&, const Record&, const std::vect
 
 /// All sections and channels together; none if one of them is not finite.
 std::optional<NormalEquations> sumOf(const std::vector<SectionFit>&);
+
+/// The pulls of bands (Residual::pulls()), those of one level together: one column a band of a level, or of a section
+/// without a level. Empty where there are none.
+/// @param sections  of the fits, indices into record.sections
+Eigen::MatrixXd pullsOf(const std::vector<SectionFit>&, const Record&, const std::vector<std::size_t>& sections);
 
 /// The largest error power of a channel, over all sections, over that of its noise.
 double worstPower(const std::vector<SectionFit>&);

@@ -55,7 +55,7 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
         covariance.row(k).setZero();
         covariance.col(k).setZero();
     }
-    errors = (jacobian * covariance * jacobian.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+    errors = (model.overdispersion * jacobian * covariance * jacobian.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (const auto k : unseen)
         for (Eigen::Index n = 0; n < errors.size(); ++n)
             if (jacobian(n, k) != 0.0)

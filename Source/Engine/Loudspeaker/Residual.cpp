@@ -48,6 +48,17 @@ ErrorPower Residual::power(std::size_t channel, const std::vector<std::complex<d
     return power;
 }
 
+Eigen::MatrixXd Residual::pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) const
+{
+    Eigen::MatrixXd result(J.cols(), bands);
+    for (Eigen::Index b = 0; b < bands; ++b) {
+        const auto from = lines_ * b / bands, count = lines_ * (b + 1) / bands - from;
+        result.col(b).noalias() = J.middleRows(from, count).transpose() * r.segment(from, count)
+                                  + J.middleRows(lines_ + from, count).transpose() * r.segment(lines_ + from, count);
+    }
+    return result;
+}
+
 void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
                     Eigen::Ref<Eigen::VectorXd> column) const
 {

@@ -33,6 +33,8 @@ class Residual {
 public:
     Residual(const Record&, const Section&);
 
+    static constexpr Eigen::Index bands = 32;
+
     std::size_t firstLine() const { return first_; }
     std::size_t lastLine() const { return last_; }
     Eigen::Index rows() const { return 2 * lines_; }
@@ -40,6 +42,8 @@ public:
     /// The residual of a channel after a predicted spectrum.
     Eigen::VectorXd of(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
     ErrorPower power(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
+    /// J^T r of each band, one column a band; bands have equally many lines.
+    Eigen::MatrixXd pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) const;
     /// The derivative of the residuals, from that of the predicted spectrum.
     void fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
               Eigen::Ref<Eigen::VectorXd> column) const;

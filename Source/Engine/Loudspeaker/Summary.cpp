@@ -13,9 +13,7 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
     auto figures = c.effect->summary(c.operatingRange, values.data());
     if (figures.empty() || model.covariance.size() == 0)
         return figures;
-    Eigen::Index first = 0;
-    for (std::size_t k = 0; k < component; ++k)
-        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
+    const auto first = firstParameterOf(model, component);
     const auto count = static_cast<Eigen::Index>(values.size());
     Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(figures.size()), count);
     for (Eigen::Index j = 0; j < count; ++j) {
@@ -35,8 +33,8 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
         for (std::size_t n = 0; n < figures.size(); ++n)
             gradient(static_cast<Eigen::Index>(n), j) = (above[n].value - below[n].value) / (2.0 * step);
     }
-    const Eigen::MatrixXd covariance = gradient * model.covariance.block(first, first, count, count)
-                                       * gradient.transpose();
+    const Eigen::MatrixXd covariance = model.overdispersion * gradient
+                                       * model.covariance.block(first, first, count, count) * gradient.transpose();
     for (std::size_t n = 0; n < figures.size(); ++n)
         figures[n].standardError = std::sqrt(covariance(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)));
     return figures;

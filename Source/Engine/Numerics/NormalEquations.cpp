@@ -70,6 +70,21 @@ Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance)
     return covariance;
 }
 
+double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& pulls)
+{
+    const ScaledSpectrum spectrum(N);
+    const double least = unseen * spectrum.largest();
+    const Eigen::MatrixXd along = spectrum.vectors.transpose() * (spectrum.scale.asDiagonal() * pulls);
+    double sum = 0.0;
+    int seen = 0;
+    for (Eigen::Index k = 0; k < N.rows(); ++k)
+        if (spectrum.values[k] > least) {
+            sum += along.row(k).squaredNorm() / spectrum.values[k];
+            ++seen;
+        }
+    return seen > 0 ? sum / seen : 0.0;
+}
+
 Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector<Eigen::Index>& use)
 {
     const auto P = static_cast<Eigen::Index>(use.size());
