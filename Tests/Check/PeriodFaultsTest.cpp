@@ -148,6 +148,29 @@ TEST_CASE("a rest position that jumps is no dropout: what repeats is fit for use
     CHECK(!find(check(sound), "rest-jump", Quantity::displacement));
 }
 
+TEST_CASE("sound that comes later once is on no other clock")
+{
+    // as where the cone rests elsewhere from then on, in one realization of the loudest level
+    const auto sound = soundTake();
+    const auto& e = *sound.excitation;
+    REQUIRE(e.realizations * (e.periods - 1) > 1);
+    for (const double late : {0.1, 0.5, -0.3}) {
+        auto take = sound;
+        auto& samples = samplesOf(take, Quantity::pressure);
+        const auto moved = synthetic::delayed(samples, late, 0.0);
+        const auto from = static_cast<std::ptrdiff_t>(samples.size()) - e.period * (e.periods - 1);
+        std::copy(moved.begin() + from, moved.end(), samples.begin() + from);
+        const auto report = check(take);
+        INFO(late << " samples: " << fatalSentences(report));
+        CHECK(!find(report, "clock-drift", Quantity::pressure));
+        CHECK(!find(report, "clock-drift", std::nullopt));
+        if (const auto* jump = find(report, "gain-jump", Quantity::pressure)) {
+            CHECK(std::abs(jump->value) < 0.1);
+            CHECK(jump->sentence.find("its gain stays") != std::string::npos);
+        }
+    }
+}
+
 TEST_CASE("a rest position that drifts does not jump, whatever the noise")
 {
     const auto sound = soundTake();

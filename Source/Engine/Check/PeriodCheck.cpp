@@ -94,6 +94,13 @@ std::optional<double> settling(const AveragedPeriods& averages, const Channel& c
     return decibelsOf(excess / signal);
 }
 
+/// Whether a change of gain makes a fair part of a jump.
+bool isOfGain(const PeriodJump& jump)
+{
+    constexpr double fair = 0.25;  // of the power
+    return std::pow(std::pow(10.0, jump.gainDb / 20.0) - 1.0, 2) > fair * std::pow(10.0, jump.db / 10.0);
+}
+
 }  // namespace
 
 std::optional<double> signalToNoise(const AveragedPeriods& averages, const Channel& channel, int level)
@@ -197,9 +204,9 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
             continue;
         const double ppm = shift->samples * 1e6 / e.period;
         figures[c].driftPpm = ppm;
-        judged.push_back(
-            {c, *shift,
-             std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError && shift->explained > 0.6});
+        judged.push_back({c, *shift,
+                          std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError
+                              && shift->explained > 0.6 && shift->steady});
     }
 
     // Samples that are lost break the other channels as much; of a rest that moves they show how the cone swings in.
@@ -248,12 +255,16 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
                 known->second = own.second;
     for (const auto& [c, jump] : worstOf) {
         const auto quantity = take.channels[c].quantity;
-        problems.push_back({"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
-                            "The gain of the " + std::string(name(quantity)) + " channel jumps by "
-                                + rounded(jump.gainDb, 2) + " dB at level " + std::to_string(jump.level)
-                                + ", realization " + std::to_string(jump.realization) + ", after used period "
-                                + std::to_string(jump.period)
-                                + ": look for a loose contact, an automatic gain or a switched range; record again."});
+        const std::string who(name(quantity)), there = " at level " + std::to_string(jump.level) + ", realization "
+                                                       + std::to_string(jump.realization) + ", after used period "
+                                                       + std::to_string(jump.period);
+        problems.push_back(
+            {"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
+             isOfGain(jump) ? "The gain of the " + who + " channel jumps by " + rounded(jump.gainDb, 2) + " dB" + there
+                                  + ": look for a loose contact, an automatic gain or a switched range; record again."
+                            : "The " + who + " channel changes" + there + ", by " + rounded(jump.db, 0)
+                                  + " dB of it, but its gain stays: the sensor, or what it sees, has moved; record "
+                                    "again."});
     }
     std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
 

@@ -284,17 +284,24 @@ std::optional<PeriodShift> periodShift(const AveragedPeriods& averages, const Ch
         return std::nullopt;
     Spectrum sum(lines.size(), 0.0);
     std::vector<double> power(lines.size(), 0.0);
+    std::vector<PeriodShift> pairs;
     for (int m = 0; m < e.realizations; ++m) {
         const auto spectra = earlySpectra(take, channel, level, m, lines);
         for (std::size_t p = 0; p + 1 < spectra.size(); ++p) {
             const auto cross = crossSpectrum(spectra[p], spectra[p + 1]);
+            pairs.push_back(shiftOf(cross, powerOf(spectra[p]), lines, e.period));
             for (std::size_t i = 0; i < sum.size(); ++i) {
                 sum[i] += cross[i];
                 power[i] += std::norm(spectra[p][i]);
             }
         }
     }
-    return shiftOf(sum, power, lines, e.period);
+    auto shift = shiftOf(sum, power, lines, e.period);
+    constexpr double sure = 6.0, share = 0.5;
+    shift.steady = std::all_of(pairs.begin(), pairs.end(), [&shift](const PeriodShift& pair) {
+        return std::abs(pair.samples - shift.samples) < sure * pair.standardError + share * std::abs(shift.samples);
+    });
+    return shift;
 }
 
 std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Channel& channel)

@@ -19,6 +19,9 @@ struct PeriodShift {
     /// share of the lines' mean squared change (of phase, and of log magnitude beyond noise) that the shift explains,
     /// 0..1
     double explained = 0.0;
+    /// Whether every pair of periods is late by as much, as far as its own lines tell. A clock is; a loudspeaker that
+    /// changes once, or swings in, is not.
+    bool steady = true;
 };
 
 /// The mean shift over all pairs of periods of one level; empty when a realization has a single period.
