@@ -238,3 +238,17 @@ TEST_CASE("a transient in the first used period is not settled")
     CHECK(problem->fatal);
     CHECK_FALSE(find(report, "not-settled", Quantity::current));
 }
+
+TEST_CASE("noise alone is settled, however strong")
+{
+    std::mt19937_64 random(5);
+    synthetic::Plan plan;
+    plan.periods = 4;
+    plan.noiseDb = -30.0;
+    const auto report = check(synthetic::record(synthetic::Loudspeaker(), plan, random));
+    INFO(fatalSentences(report));
+    for (const auto& channel : report.channels) {
+        REQUIRE(channel.settlingDb);
+        CHECK(*channel.settlingDb < -60.0);
+    }
+}

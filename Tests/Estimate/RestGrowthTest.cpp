@@ -135,6 +135,36 @@ TEST_CASE("Noise with distortion above it is not called linear, though it has th
     }
 }
 
+TEST_CASE("Noise with distortion far above it bends the growth")
+{
+    for (int seed = 1; seed <= 5; ++seed) {
+        const auto u = programme(40.0, seed);
+        std::mt19937_64 random(static_cast<std::uint64_t>(seed + 100));
+        auto y = played(u, 0.0, 0.03);
+        synthetic::addNoise(y, 0.01 * synthetic::rms(y), random);
+        const auto growth = restGrowth(u, y, rate, {.segment = 1024});
+        CAPTURE(seed, growth.slope, growth.standardError);
+        CHECK(growth.bends);
+    }
+}
+
+TEST_CASE("A gain that is higher where it is loud is told in dB")
+{
+    constexpr std::size_t segment = 1024, passage = 8 * segment;
+    constexpr double louder = 1.1;
+    std::mt19937_64 random(4);
+    std::vector<double> u(40 * passage, 0.0);
+    synthetic::addNoise(u, 1.0, random);
+    for (std::size_t t = 0; t < u.size(); ++t)
+        u[t] *= t / passage % 2 == 0 ? 0.1 : 1.0;
+    auto y = played(u, 0.0, 0.0);
+    for (std::size_t t = 0; t < y.size(); ++t)
+        y[t] *= t / passage % 2 == 0 ? 1.0 : louder;
+    const auto growth = restGrowth(u, y, rate, {.segment = segment});
+    REQUIRE(growth.gainDb);
+    CHECK(*growth.gainDb == Approx(20.0 * std::log10(louder)).epsilon(0.05));
+}
+
 TEST_CASE("No sentence on what is not coherent tells a number that is none")
 {
     const WelchOptions segments {.segment = 1024};
