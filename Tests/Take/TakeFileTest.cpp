@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What may not be written as a take.
+#include "Engine/Take/ExcitationPlan.h"
 #include "Engine/Take/TakeFile.h"
 #include "Scratch.h"
+#include "SomeMultisine.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <limits>
 
 using namespace excursion;
@@ -31,4 +35,21 @@ TEST_CASE("A take is written with channels of one length, finite, and a full sca
         CHECK_THROWS_AS(writeMeasurement(take, scratch / "bad"), Error);
     }
     CHECK_FALSE(std::filesystem::exists(scratch / "bad" / "measurement.json"));
+}
+
+TEST_CASE("A multisine whose file tells no band may reach to half the sample rate")
+{
+    const Scratch scratch;
+    ExcitationPlanOptions options;
+    options.multisine = someMultisine(Grid::oddRandom, Shape::pink);
+    const auto plan = planExcitation(options);
+    writeMeasurement(plan, scratch / "take");
+    const auto header = headerOf(scratch / "take");
+    auto document = nlohmann::json::parse(std::ifstream(header));
+    REQUIRE(document["excitation"].erase("band") == 1);
+    std::ofstream(header) << document;
+    const auto read = readOwnTake(header).take;
+    REQUIRE(read.excitation);
+    CHECK(read.excitation->bandLow == 0.0);
+    CHECK(read.excitation->bandHigh == 0.5 * plan.sampleRate);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Diagnosis/RaiseDegrees.h"
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Loudspeaker/Fit.h"
 
@@ -21,7 +22,7 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
 ///     theta_r <- theta_r - C_rb C_bb^-1 theta_b,   C_rr <- C_rr - C_rb C_bb^-1 C_br.
 /// No fit is needed: near its minimum the cost is a parabola. The model has the covariance of its fit, and the law more
 /// than `by` degrees.
-Model withLowerLaw(const Model&, std::size_t k, int by = 4);
+Model withLowerLaw(const Model&, std::size_t k, int by = degreesAtOnce);
 
 /// Takes back what laws were raised by, where that no longer pays: at once, by the covariance of the fit by simulation
 /// whose summary is given, whose cost follows. Each is checked by a simulation: where that leaves more than

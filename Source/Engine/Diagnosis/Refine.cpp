@@ -14,11 +14,11 @@ namespace excursion {
 
 namespace {
 
-/// Four degrees more for each law whose highest two still count: what they leave out is in no standard error. Those
-/// that do not pay are to be taken back (lowerAsItPays()).
+/// Raises each law whose highest two degrees still count: what they leave out is in no standard error. What does not
+/// pay is to be taken back (lowerAsItPays()).
 Model withRoom(Model model)
 {
-    constexpr int last = 2, more = 4;
+    constexpr int last = 2, more = degreesAtOnce;
     std::vector<std::size_t> counting;
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
@@ -64,12 +64,10 @@ int coherentSubsteps(const Model& model, const Record& record, const std::vector
     return chosen;
 }
 
-}  // namespace
-
-FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd,
-                           const Progress& progress)
+/// fitBySimulation(), with degrees of laws that may not pay.
+FitSummary fitWithRoom(Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                       const FitOptions& options, bool toTheEnd, const Progress& progress)
 {
-    const auto sections = estimationSections(record);
     constexpr double clean = 1.2;
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
@@ -115,7 +113,6 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
             auto next = run(*one, alongTheFloor, false, true, 0.5, 1.0);
             if (!next.usable())
                 continue;
-            lowerAsItPays(*one, next, record, sections, fine);
             if (one != &model)
                 model = std::move(*one);
             return next;
@@ -125,6 +122,18 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
+}
+
+}  // namespace
+
+FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd,
+                           const Progress& progress)
+{
+    const auto sections = estimationSections(record);
+    auto summary = fitWithRoom(model, record, sections, options, toTheEnd, progress);
+    if (summary.usable())
+        lowerAsItPays(model, summary, record, sections, options);
+    return summary;
 }
 
 FitSummary refine(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
@@ -157,10 +166,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
-    summary = fitBySimulation(model, record, chosen, false, progress.part(0.77, 1.0));
-    if (summary.usable())
-        lowerAsItPays(model, summary, record, sections, chosen);
-    return summary;
+    return fitBySimulation(model, record, chosen, false, progress.part(0.77, 1.0));
 }
 
 FitSummary refineByNoise(Model& model, Record& record, const FitOptions& options, const Progress& progress)
