@@ -35,7 +35,7 @@ Outcome fitted(const Eigen::MatrixXd& J, double common, std::mt19937& random)
     Eigen::MatrixXd pulls(columns, groups);
     for (Eigen::Index g = 0; g < groups; ++g)
         pulls.col(g) = J.middleRows(g * inGroup, inGroup).transpose() * r.segment(g * inGroup, inGroup);
-    outcome.overdispersion = overdispersionOf(N, pulls);
+    outcome.overdispersion = overdispersionOf(N, N, pulls);
     return outcome;
 }
 
@@ -69,6 +69,18 @@ TEST_CASE("Directions that data does not see pull nothing", "[numerics]")
     Eigen::MatrixXd N = Eigen::MatrixXd::Identity(3, 3), pulls(3, 2);
     N(2, 2) = 0.0;
     pulls << 1.0, -1.0, 2.0, -2.0, 0.0, 0.0;
-    CHECK(overdispersionOf(N, pulls) == Approx((2.0 + 8.0) / 2.0));
-    CHECK(overdispersionOf(Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Zero(2, 1)) == 0.0);
+    CHECK(overdispersionOf(N, N, pulls) == Approx((2.0 + 8.0) / 2.0));
+    CHECK(overdispersionOf(Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Zero(2, 1))
+          == 0.0);
+}
+
+TEST_CASE("What priors hold and what a search has left do not count as scatter", "[numerics]")
+{
+    const Eigen::MatrixXd JtJ = Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
+    Eigen::MatrixXd N = JtJ, pulls(3, 2);
+    N(2, 2) = 50.0;
+    pulls << 1.0, -1.0, 2.0, -2.0, 0.0, 0.0;
+    CHECK(overdispersionOf(N, JtJ, pulls) == Approx((2.0 + 8.0) / 2.0));
+    pulls << 3.0, 0.0, 0.0, 0.0, 0.0, 0.0;  // all of it in one group
+    CHECK(overdispersionOf(N, JtJ, pulls) == 0.0);
 }

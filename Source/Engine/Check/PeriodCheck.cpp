@@ -203,7 +203,8 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
         if (!shift || shift->standardError * 1e6 / e.period > 50.0)
             continue;
         const double ppm = shift->samples * 1e6 / e.period;
-        figures[c].driftPpm = ppm;
+        if (shift->steady)
+            figures[c].driftPpm = ppm;
         judged.push_back({c, *shift,
                           std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError
                               && shift->explained > 0.6 && shift->steady});
@@ -255,16 +256,17 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
                 known->second = own.second;
     for (const auto& [c, jump] : worstOf) {
         const auto quantity = take.channels[c].quantity;
-        const std::string who(name(quantity)), there = " at level " + std::to_string(jump.level) + ", realization "
+        const std::string who(name(quantity)), place = "level " + std::to_string(jump.level) + ", realization "
                                                        + std::to_string(jump.realization) + ", after used period "
                                                        + std::to_string(jump.period);
         problems.push_back(
             {"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
-             isOfGain(jump) ? "The gain of the " + who + " channel jumps by " + rounded(jump.gainDb, 2) + " dB" + there
-                                  + ": look for a loose contact, an automatic gain or a switched range; record again."
-                            : "The " + who + " channel changes" + there + ", by " + rounded(jump.db, 0)
-                                  + " dB of it, but its gain stays: the sensor, or what it sees, has moved; record "
-                                    "again."});
+             isOfGain(jump)
+                 ? "The gain of the " + who + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at " + place
+                       + ": look for a loose contact, an automatic gain or a switched range; record again."
+                 : "At " + place + ", the " + who + " channel changes by " + rounded(jump.db, 0)
+                       + " dB of its power and keeps its gain: the sensor, or what it sees, has moved; "
+                         "record again."});
     }
     std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
 

@@ -297,10 +297,11 @@ std::optional<PeriodShift> periodShift(const AveragedPeriods& averages, const Ch
         }
     }
     auto shift = shiftOf(sum, power, lines, e.period);
-    constexpr double sure = 6.0, share = 0.5;
-    shift.steady = std::all_of(pairs.begin(), pairs.end(), [&shift](const PeriodShift& pair) {
+    constexpr double sure = 6.0, share = 0.3, most = 0.6;
+    const auto alike = std::count_if(pairs.begin(), pairs.end(), [&shift](const PeriodShift& pair) {
         return std::abs(pair.samples - shift.samples) < sure * pair.standardError + share * std::abs(shift.samples);
     });
+    shift.steady = static_cast<double>(alike) >= most * static_cast<double>(pairs.size());
     return shift;
 }
 
@@ -338,8 +339,11 @@ std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Chann
             const auto spectra = earlySpectra(take, channel, level, jump.realization, lines);
             const auto p = static_cast<std::size_t>(jump.period);
             jump.change = isChange(spectra, p, lines, e.period);
+            // until the end, or only for that pair, whichever is more
             jump.gainDb = gainOf(spectra[std::max<std::size_t>(p, 1) - 1],
                                  spectrumOf(take, channel, level, jump.realization, e.periods - 1, lines));
+            if (const double there = gainOf(spectra[p], spectra[p + 1]); std::abs(there) > std::abs(jump.gainDb))
+                jump.gainDb = there;
         }
     }
     return jumps;

@@ -19,8 +19,8 @@ struct PeriodShift {
     /// share of the lines' mean squared change (of phase, and of log magnitude beyond noise) that the shift explains,
     /// 0..1
     double explained = 0.0;
-    /// Whether every pair of periods is late by as much, as far as its own lines tell. A clock is; a loudspeaker that
-    /// changes once, or swings in, is not.
+    /// Whether three of five pairs of periods are late by as much, as far as their own lines tell. With a clock all are
+    /// but for those where samples were lost; a loudspeaker that changes once is late once.
     bool steady = true;
 };
 

@@ -4,9 +4,9 @@
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace excursion {
 namespace {
@@ -106,15 +106,21 @@ bool wakeShapes(Model& model, const Record& record, const std::vector<std::size_
 bool findUsualShapes(Model& model, const Record& record, const std::vector<std::size_t>& sections,
                      const FitOptions& options)
 {
-    std::optional<LinearResponses> still;
-    return hasPeriods(record) && reshapeEach(model, record, sections, options, [&](Model& anew, std::size_t k) {
-               const auto& component = anew.components[k];
-               if (!component.effect->linear() || !isAtWork(component) || !hasUnusualShape(component))
-                   return false;
-               if (!still)
-                   still.emplace(withoutLaws(model, record, options.threads));
-               return fitUsualShape(anew, k, still->gridFor(component)).usable();
-           });
+    const auto isUnusual = [](const Component& component) { return isAtWork(component) && hasUnusualShape(component); };
+    if (!hasPeriods(record) || std::none_of(model.components.begin(), model.components.end(), isUnusual))
+        return false;
+    // The other shape is to win by itself, not by the steps that it gets.
+    if (auto fitted = model;
+        quickFit(fitted, record, sections, options).usable()
+        && quickCost(fitted, record, sections, options) < quickCost(model, record, sections, options))
+        model = std::move(fitted);
+    return reshapeEach(model, record, sections, options, [&](Model& anew, std::size_t k) {
+        const auto& component = anew.components[k];
+        if (!isUnusual(component))
+            return false;
+        const LinearResponses still(withoutLaws(anew, record, options.threads));
+        return fitUsualShape(anew, k, still.gridFor(component)).usable();
+    });
 }
 
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,

@@ -22,9 +22,9 @@ bool findAnew(Model&, const LinearResponses& still, const std::function<bool(con
 /// 0.2 % less; the model then had a quick fit.
 bool wakeShapes(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
-/// Finds linear effects anew that depart from their law farther than is plausible, in a usual shape: another may look
-/// the same in every linear response, and bend the laws beside it. True if that leaves 0.2 % less; the model then had a
-/// quick fit. Does nothing for a record without periods.
+/// Finds effects that relax anew where they depart from their law farther than is plausible, in a usual shape: another
+/// may look the same in every linear response, and bend the laws beside it. True if that leaves 0.2 % less; the model
+/// then had a quick fit. Does nothing for a record without periods.
 bool findUsualShapes(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
 /// Wakes shapes, and then searches again for linear effects that have several parts, as newly known effects may have

@@ -92,7 +92,7 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
         if (!p.free || lower.covariance(row, row) == 0.0)  // not told by the fit
             continue;
         p.value = std::clamp(moved[row], p.lower, p.upper);
-        p.standardError = std::sqrt(lower.overdispersion * lower.covariance(row, row));
+        p.standardError = before.standardError * std::sqrt(lower.covariance(row, row) / C(rest[j], rest[j]));
     }
     return lower;
 }

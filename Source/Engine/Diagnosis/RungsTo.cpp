@@ -44,14 +44,14 @@ void takeErrors(Model& part, const std::vector<bool>& held, const Model& whole)
         return;
     const auto places = placesIn(whole, part);
     const auto all = parametersOf(part);
-    const double share = whole.overdispersion / part.overdispersion;
+    const auto known = parametersOf(whole);
     for (std::size_t k = 0; k < places.size(); ++k)
         if (held[k]) {
             const auto row = static_cast<Eigen::Index>(k);
             for (std::size_t j = 0; j < places.size(); ++j)
                 if (held[j])
-                    part.covariance(row, static_cast<Eigen::Index>(j)) = share * whole.covariance(places[k], places[j]);
-            all[k]->standardError = std::sqrt(part.overdispersion * part.covariance(row, row));
+                    part.covariance(row, static_cast<Eigen::Index>(j)) = whole.covariance(places[k], places[j]);
+            all[k]->standardError = known[static_cast<std::size_t>(places[k])]->standardError;
         }
 }
 

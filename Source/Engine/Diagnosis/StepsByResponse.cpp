@@ -33,7 +33,7 @@ std::set<std::string> setOf(const Model& model)
 }
 
 /// The number of effects that stand for something else.
-auto strangersIn(const Model& model)
+std::size_t strangersIn(const Model& model)
 {
     std::size_t count = 0;
     for (std::size_t k = 1; k < model.components.size(); ++k)
@@ -52,7 +52,8 @@ Found withOneMore(const Model& model, const Effect& effect, const std::vector<Re
     auto refined = found.model;
     if (refineByResponse(refined, targets).usable())
         if (const double errorDb = responseErrorDb(refined, targets);
-            errorDb < found.errorDb || strangersIn(refined) < strangersIn(found.model))
+            errorDb < found.errorDb
+            || (errorDb < found.errorDb + neededDb && strangersIn(refined) < strangersIn(found.model)))
             found = {std::move(refined), errorDb};
     return found;
 }

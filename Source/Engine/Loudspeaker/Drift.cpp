@@ -114,17 +114,15 @@ Drift follow(Model before, const std::vector<std::string>& names, const Search& 
     }
     // What was held is as well known as it was, what was fitted as it is now.
     if (before.covariance.size() > 0) {
-        Eigen::MatrixXd covariance = before.overdispersion
-                                     * (factors.asDiagonal() * before.covariance * factors.asDiagonal());
+        Eigen::MatrixXd covariance = factors.asDiagonal() * before.covariance * factors.asDiagonal();
         for (const auto k : moved) {
             covariance.row(k).setZero();
             covariance.col(k).setZero();
         }
         for (const auto r : moved)
             for (const auto c : moved)
-                covariance(r, c) = drift.model.overdispersion * drift.model.covariance(r, c);
+                covariance(r, c) = drift.model.covariance(r, c);
         drift.model.covariance = std::move(covariance);
-        drift.model.overdispersion = 1.0;
     }
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (!all[k]->free)

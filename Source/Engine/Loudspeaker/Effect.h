@@ -93,6 +93,8 @@ struct Parameter {
     bool heard = false;  ///< only the sound shows it: not free if none was measured
     /// its sign says nothing, so that its slope vanishes at zero (SearchCoordinates); it has a prior and no bounds
     bool even = false;
+    /// by which a relaxation departs from the law that its effect follows beforehand (RelaxationSpectrum.h)
+    bool departure = false;
     bool strength = false;  ///< if all strengths of an effect are zero, it is absent
     /// prior: plausible standard deviation about zero
     double prior = std::numeric_limits<double>::infinity();

@@ -123,6 +123,20 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     return coordinates.now();
 }
 
+/// Standard errors where the residuals of the data, but not the priors, scatter as variance by `dispersion`:
+///     N^-1 (dispersion J^T J + scatter W) N^-1,   C = scatter N^-1,   N = J^T J + W,
+/// or those of C if that is no more. NaN where C has it.
+Eigen::VectorXd standardErrorsOf(const Eigen::MatrixXd& C, double scatter, const Eigen::MatrixXd& JtJ,
+                                 double dispersion)
+{
+    const Eigen::VectorXd variance = C.diagonal();
+    if (!(dispersion > scatter))
+        return variance.cwiseSqrt();
+    const Eigen::MatrixXd known = C.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
+    const double more = (dispersion - scatter) / (scatter * scatter);
+    return (variance + more * (known * JtJ).cwiseProduct(known).rowwise().sum()).cwiseSqrt();
+}
+
 /// The search of the model's parameters for the least error.
 /// @param corrected  steps are corrected by the slopes of their begin; errorOf tells slopes and spectra then
 FitSummary search(Model& model, const Record& record, const std::vector<std::size_t>& sections, const ErrorOf& errorOf,
@@ -143,7 +157,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     std::vector<SectionFit> tried;  // where slopes were not asked for, last
     KeptSlopes slopes(record, sections);
     NormalEquations last;                                     // at the last place with slopes, by parameters
-    Eigen::MatrixXd lastPulls;                                // there
+    Eigen::MatrixXd lastPulls, lastOfData;                    // there: of bands, and N without priors
     bool noiseAtLast = false;                                 // there
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
@@ -159,10 +173,12 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         sum.sure = record.noiseKnown && !onlyNoise ? sureNoise * sum.rows : 0.0;
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+        const Eigen::MatrixXd ofData = sum.N;
         addPrior(model, active, sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
             last = sum;
             lastPulls = pullsOf(fits, record, sections);
+            lastOfData = ofData;
             noiseAtLast = onlyNoise;
         }
         coordinates.convert(sum, variance);
@@ -203,14 +219,15 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
     const auto covariance = covarianceOf(last.N, scatter);
-    model.overdispersion = std::max(1.0, overdispersionOf(last.N, lastPulls) / scatter);
+    const auto errors = standardErrorsOf(covariance, scatter, lastOfData,
+                                         overdispersionOf(last.N, lastOfData, lastPulls));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         for (Eigen::Index c = 0; c < P; ++c)
             model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
-        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(model.overdispersion * covariance(r, r));
+        all[static_cast<std::size_t>(row)]->standardError = errors[r];
     }
     return summary;
 }

@@ -135,7 +135,6 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
     const auto covariance = covarianceOf(sum.N, variance);
     model.covariance = Eigen::MatrixXd::Zero(count, count);
-    model.overdispersion = 1.0;
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         for (Eigen::Index c = 0; c < P; ++c)

@@ -72,13 +72,13 @@ SearchSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 /// The same for component k.
 SearchSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
 
-/// Whether a linear effect departs farther from its law than is plausible beforehand.
+/// Whether an effect that relaxes departs farther from its law than is plausible beforehand.
 bool hasUnusualShape(const Component&);
 
-/// Fits linear component k from its starts beside a base that has taken over what the component did, first without
-/// departures from its law and with all else held. An inductance beside relaxations with rates and weights of their own
-/// has several shapes that no linear response tells apart; this one is the nearest to the law. The model is unchanged
-/// if the fit is not usable.
+/// Fits component k, which relaxes, from its starts beside a base that has taken over what the component did, first
+/// without departures from its law and with all else held. An inductance beside relaxations with rates and weights of
+/// their own has several shapes that no linear response tells apart; this one is the nearest to the law. The model is
+/// unchanged if the fit is not usable.
 SearchSummary fitUsualShape(Model&, std::size_t k, const std::vector<ResponseTarget>&);
 
 /// Fits a model that has a new effect. Of effects that have several parts more are looked for from where they are, and

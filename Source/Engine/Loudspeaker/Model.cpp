@@ -225,6 +225,18 @@ Eigen::Index firstParameterOf(const Model& model, std::size_t k)
     return first;
 }
 
+Eigen::MatrixXd widenedCovariance(const Model& model)
+{
+    const auto all = parametersOf(model);
+    const auto& C = model.covariance;
+    Eigen::VectorXd times = Eigen::VectorXd::Ones(C.rows());
+    for (Eigen::Index k = 0; k < C.rows(); ++k)
+        if (const double ratio = all[static_cast<std::size_t>(k)]->standardError / std::sqrt(C(k, k));
+            std::isfinite(ratio))  // known, and not held
+            times[k] = ratio;
+    return times.asDiagonal() * C * times.asDiagonal();
+}
+
 Eigen::VectorXd parameterVector(const Model& model)
 {
     const auto all = parametersOf(model);

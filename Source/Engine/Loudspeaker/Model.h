@@ -51,10 +51,9 @@ struct Model {
     std::vector<Component> components;  ///< components.front() is the base
     Component path;                     ///< radiation(): Sd in m^2 and tau in s
     double microphoneDistance = 1.0;    ///< d, m
-    Eigen::MatrixXd covariance;         ///< of parameterVector(); empty when unknown
-    /// by which, as variance, errors of the parameters exceed what the covariance says, as the model leaves more than
-    /// noise (overdispersionOf()); at least 1
-    double overdispersion = 1.0;
+    /// of parameterVector() by the noise; empty when unknown. Standard errors are larger than its diagonal says where
+    /// the model leaves more than noise (widenedCovariance())
+    Eigen::MatrixXd covariance;
 
     const Component& base() const { return components.front(); }
     bool electrical() const { return base().effect->electrical(); }
@@ -103,6 +102,8 @@ std::vector<Parameter*> parametersOf(Model&);
 std::vector<const Parameter*> parametersOf(const Model&);
 /// The place of component k's first parameter among them; that of the path's for k = number of components.
 Eigen::Index firstParameterOf(const Model&, std::size_t k);
+/// The covariance with the standard errors of the parameters on its diagonal, and the same correlations.
+Eigen::MatrixXd widenedCovariance(const Model&);
 Eigen::VectorXd parameterVector(const Model&);
 void setParameterVector(Model&, const Eigen::VectorXd&);
 

@@ -189,7 +189,7 @@ Json toJson(const Model& model)
     }
     document["path"] = {{"parameters", parametersJson(model.path.parameters)},
                         {"microphoneDistance", model.microphoneDistance}};
-    document["covariance"] = covarianceJson(model.overdispersion * model.covariance);
+    document["covariance"] = covarianceJson(model.covariance);
     document["laws"] = lawsJson(model);
     return document;
 }

@@ -214,26 +214,22 @@ void SectionFit::pull(const Eigen::MatrixXd& more)
 Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& record,
                         const std::vector<std::size_t>& sections)
 {
-    std::vector<Eigen::MatrixXd> groups;
-    std::map<int, std::size_t> groupOf;  // a level's
-    for (std::size_t s = 0; s < fits.size(); ++s) {
-        if (fits[s].pulls.size() == 0)
-            continue;
-        const int level = record.sections[sections[s]].level;
-        if (const auto known = groupOf.find(level); level >= 0 && known != groupOf.end()) {
-            groups[known->second] += fits[s].pulls;
-            continue;
+    std::map<int, Eigen::MatrixXd> byLevel;
+    for (std::size_t s = 0; s < fits.size(); ++s)
+        if (fits[s].pulls.size() > 0) {
+            auto& pulls = byLevel[record.sections[sections[s]].level];
+            pulls = pulls.size() == 0 ? fits[s].pulls : Eigen::MatrixXd(pulls + fits[s].pulls);
         }
-        groupOf[level] = groups.size();
-        groups.push_back(fits[s].pulls);
-    }
-    if (groups.empty())
+    if (byLevel.empty())
         return {};
-    const auto rows = groups.front().rows(), columns = groups.front().cols();
-    Eigen::MatrixXd pulls(rows, columns * static_cast<Eigen::Index>(groups.size()));
-    for (std::size_t k = 0; k < groups.size(); ++k)
-        pulls.middleCols(static_cast<Eigen::Index>(k) * columns, columns) = groups[k];
-    return pulls;
+    const auto rows = byLevel.begin()->second.rows();
+    Eigen::MatrixXd all(rows, Residual::bands * static_cast<Eigen::Index>(byLevel.size()));
+    Eigen::Index column = 0;
+    for (const auto& [level, pulls] : byLevel) {
+        all.middleCols(column, Residual::bands) = pulls;
+        column += Residual::bands;
+    }
+    return all;
 }
 
 double worstPower(const std::vector<SectionFit>& fits)

@@ -55,8 +55,8 @@ std::vector<SectionFit> outputError(const Model&, const Record&, const std::vect
 /// All sections and channels together; none if one of them is not finite.
 std::optional<NormalEquations> sumOf(const std::vector<SectionFit>&);
 
-/// The pulls of bands (Residual::pulls()), those of one level together: one column a band of a level, or of a section
-/// without a level. Empty where there are none.
+/// The pulls of bands (Residual::pulls()), those of one level together, and those of all sections without a level: what
+/// a model lacks pulls them alike. One column a band of a level; empty where there are none.
 /// @param sections  of the fits, indices into record.sections
 Eigen::MatrixXd pullsOf(const std::vector<SectionFit>&, const Record&, const std::vector<std::size_t>& sections);
 

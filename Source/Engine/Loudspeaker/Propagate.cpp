@@ -29,7 +29,8 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     if (model.covariance.rows() != theta.size())
         return errors;
     Model moved = model;
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(errors.size(), theta.size()), covariance = model.covariance;
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(errors.size(), theta.size()),
+                    covariance = widenedCovariance(model);
     std::vector<Eigen::Index> unseen;
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
@@ -55,7 +56,7 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
         covariance.row(k).setZero();
         covariance.col(k).setZero();
     }
-    errors = (model.overdispersion * jacobian * covariance * jacobian.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+    errors = (jacobian * covariance * jacobian.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (const auto k : unseen)
         for (Eigen::Index n = 0; n < errors.size(); ++n)
             if (jacobian(n, k) != 0.0)

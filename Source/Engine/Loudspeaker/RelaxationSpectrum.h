@@ -37,6 +37,7 @@ inline std::vector<Parameter> parameters()
             p.name = letter + std::to_string(m);
             p.unit = "1";
             p.prior = spread;
+            p.departure = true;
             p.lower = -reach * spread;
             p.upper = reach * spread;
             result.push_back(std::move(p));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Residual.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -50,11 +51,16 @@ ErrorPower Residual::power(std::size_t channel, const std::vector<std::complex<d
 
 Eigen::MatrixXd Residual::pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) const
 {
-    Eigen::MatrixXd result(J.cols(), bands);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(J.cols(), bands);
+    const double low = static_cast<double>(first_) + 0.5, octaves = std::log2((static_cast<double>(last_) + 1.5) / low);
+    Eigen::Index from = 0;
     for (Eigen::Index b = 0; b < bands; ++b) {
-        const auto from = lines_ * b / bands, count = lines_ * (b + 1) / bands - from;
+        const double end = low * std::exp2(octaves * static_cast<double>(b + 1) / bands) - static_cast<double>(first_);
+        const auto until = b + 1 == bands ? lines_ : std::clamp<Eigen::Index>(std::lround(end), from, lines_);
+        const auto count = until - from;
         result.col(b).noalias() = J.middleRows(from, count).transpose() * r.segment(from, count)
                                   + J.middleRows(lines_ + from, count).transpose() * r.segment(lines_ + from, count);
+        from = until;
     }
     return result;
 }

@@ -33,7 +33,7 @@ class Residual {
 public:
     Residual(const Record&, const Section&);
 
-    static constexpr Eigen::Index bands = 32;
+    static constexpr Eigen::Index bands = 48;
 
     std::size_t firstLine() const { return first_; }
     std::size_t lastLine() const { return last_; }
@@ -42,7 +42,8 @@ public:
     /// The residual of a channel after a predicted spectrum.
     Eigen::VectorXd of(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
     ErrorPower power(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
-    /// J^T r of each band, one column a band; bands have equally many lines.
+    /// J^T r of each band, one column a band. Bands are equally wide in log frequency, as what tells of a parameter
+    /// lies around its resonance or at an end of the range.
     Eigen::MatrixXd pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) const;
     /// The derivative of the residuals, from that of the predicted spectrum.
     void fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,

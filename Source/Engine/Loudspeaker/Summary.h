@@ -9,7 +9,7 @@
 namespace excursion {
 
 /// The summary of a component with standard errors, sqrt(g^T C g): g by central differences over a small fraction of
-/// each parameter's standard error, C the model's covariance. NaN if C is unknown.
+/// each parameter's standard error, C its widenedCovariance(). NaN if C is unknown.
 std::vector<Figure> figuresOf(const Model&, std::size_t component);
 
 }  // namespace excursion

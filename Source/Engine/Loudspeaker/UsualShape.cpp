@@ -9,20 +9,15 @@
 namespace excursion {
 namespace {
 
-/// A shape that a prior pulls towards a law.
-bool isDeparture(const Parameter& p) { return !p.strength && std::isfinite(p.prior); }
-
-/// Hands what component k adds to the base, in the middle of its band, over to the base.
+/// Hands what component k adds to the base, in the middle of its band, over to what is free of the base.
 void handToBase(Model& model, std::size_t k)
 {
     const auto& own = model.components[k];
     const auto values = valuesOf(own);
     const double middle = std::sqrt(own.operatingRange.lowFrequency * own.operatingRange.highFrequency);
-    std::vector<double> sums;
-    for (const auto& p : model.base().parameters)
-        sums.push_back(p.value + own.effect->addsTo(p.name, own.operatingRange, values.data(), middle));
-    for (std::size_t n = 0; n < sums.size(); ++n)
-        model.components.front().parameters[n].value = sums[n];
+    for (auto& p : model.components.front().parameters)
+        if (p.free)
+            p.value += own.effect->addsTo(p.name, own.operatingRange, values.data(), middle);
 }
 
 /// The model with nothing free but the base, and component k but for its departures.
@@ -30,7 +25,7 @@ Model heldBut(Model model, std::size_t k)
 {
     for (std::size_t n = 1; n < model.components.size(); ++n)
         for (auto& p : model.components[n].parameters)
-            p.free = p.free && n == k && !isDeparture(p);
+            p.free = p.free && n == k && !p.departure;
     for (auto& p : model.path.parameters)
         p.free = false;
     return model;
@@ -49,16 +44,13 @@ void freeAs(Model& model, const Model& other)
 bool hasUnusualShape(const Component& component)
 {
     constexpr double usual = 1.0;  // mean square, in units of the priors
-    const auto atFirst = component.effect->parameters(component.operatingRange);
     double sum = 0.0;
     int count = 0;
-    for (std::size_t n = 0; n < component.parameters.size(); ++n) {
-        const auto& p = component.parameters[n];
-        if (!isDeparture(p) || !p.free || atFirst[n].value != 0.0)
-            continue;
-        sum += std::pow(p.value / p.prior, 2);
-        ++count;
-    }
+    for (const auto& p : component.parameters)
+        if (p.departure && p.free) {
+            sum += std::pow(p.value / p.prior, 2);
+            ++count;
+        }
     return count > 0 && sum > usual * count;
 }
 

@@ -70,19 +70,18 @@ Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance)
     return covariance;
 }
 
-double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& pulls)
+double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& pulls)
 {
     const ScaledSpectrum spectrum(N);
     const double least = unseen * spectrum.largest();
-    const Eigen::MatrixXd along = spectrum.vectors.transpose() * (spectrum.scale.asDiagonal() * pulls);
-    double sum = 0.0;
-    int seen = 0;
+    const Eigen::MatrixXd axes = spectrum.vectors.transpose() * spectrum.scale.asDiagonal(), along = axes * pulls;
+    double scatter = 0.0, told = 0.0;
     for (Eigen::Index k = 0; k < N.rows(); ++k)
         if (spectrum.values[k] > least) {
-            sum += along.row(k).squaredNorm() / spectrum.values[k];
-            ++seen;
+            scatter += (along.row(k).squaredNorm() - std::pow(along.row(k).sum(), 2)) / spectrum.values[k];
+            told += axes.row(k).dot(JtJ * axes.row(k).transpose()) / spectrum.values[k];
         }
-    return seen > 0 ? sum / seen : 0.0;
+    return told > 0.0 ? std::max(scatter, 0.0) / told : 0.0;
 }
 
 Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector<Eigen::Index>& use)

@@ -40,13 +40,16 @@ struct ScaledSpectrum {
 /// see are left out, and their parameters' entries on the diagonal are NaN.
 Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance);
 
-/// How far the pulls g_k = J_k^T r_k of groups of residuals scatter at a minimum, over what noise of unit variance
+/// By how much pulls g_k = J_k^T r_k of groups of residuals scatter at a minimum, over what noise of unit variance
 /// makes of them at most:
-///     sum_k g_k^T N^-1 g_k / P,   P = number of directions that the data sees.
-/// Residuals that are noise pull at random, and it is below 1. Those that a model in a wrong shape leaves pull each
-/// group its own way, and only their sum is zero: parameters scatter by so much more, as variance, than N^-1 says.
+///     (sum_k g_k^T N^-1 g_k - g^T N^-1 g) / tr(N^-1 J^T J),   g = sum_k g_k,
+/// where g is what a search that stopped early has left. Residuals that are noise pull at random, and it is below 1.
+/// Those that a model in a wrong shape leaves pull each group its own way, and only their sum is zero: parameters
+/// scatter by so much more, as variance, than the data says.
+/// @param N      J^T J and the curvature of priors
+/// @param JtJ    of the data alone
 /// @param pulls  one column a group
-double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& pulls);
+double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& pulls);
 
 /// min |r + J d| over the columns `use` only: the step, with columns scaled and unseen directions left out.
 Eigen::VectorXd gaussNewtonStep(const NormalEquations&, const std::vector<Eigen::Index>& use);
