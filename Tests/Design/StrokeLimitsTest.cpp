@@ -147,3 +147,26 @@ TEST_CASE("Words and document of what-if say the same numbers", "[design]")
     CHECK(document.at("advice") == words);
     CHECK(read.distortion.effects[0].alone.size() == 1);
 }
+
+TEST_CASE("Advice tells sound without distortion, parity, and by how much the cone moves more or less")
+{
+    WhatIf told;
+    told.stroke = strokeLimits(with("force-factor", 0.0, -0.2 * makeModel("electrodynamic").baseParameter("Bl").value));
+    CHECK_THAT(advice(told), Catch::StartsWith("The model adds no distortion to the sound."));  // no sound either
+    ChannelDistortion sound, motion;
+    sound.quantity = Quantity::pressure;
+    motion.quantity = Quantity::displacement;
+    const auto said = [&](double even, double odd, double gain) {
+        sound.evenDb = even;
+        sound.oddDb = odd;
+        motion.gainDb = gain;
+        told.distortion.whole = {sound, motion};
+        return advice(told);
+    };
+    CHECK_THAT(said(-120.0, -110.0, 0.0), Catch::Contains("adds no distortion"));
+    CHECK_THAT(said(-90.0, -110.0, 0.0), Catch::Contains("-90.0 dB") && Catch::Contains("mostly even"));
+    CHECK_THAT(said(-60.0, -40.0, 0.4), Catch::Contains("mostly odd") && !Catch::Contains("The cone moves"));
+    CHECK_THAT(said(-40.0, -42.0, -1.5),
+               Catch::Contains("even and odd alike") && Catch::Contains("The cone moves 1.5 dB less"));
+    CHECK_THAT(said(-40.0, -42.0, 2.0), Catch::Contains("The cone moves 2.0 dB more"));
+}

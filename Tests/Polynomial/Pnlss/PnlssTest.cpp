@@ -105,7 +105,8 @@ TEST_CASE("The compiled recursion simulates as the definition does, and its Jaco
     for (const auto& s :
          {Shape {1, 1, 1, 3, TermMask::full, false}, Shape {2, 1, 1, 3, TermMask::full, true},
           Shape {3, 1, 1, 3, TermMask::full, false}, Shape {3, 2, 2, 2, TermMask::statesOnly, false},
-          Shape {4, 1, 2, 3, TermMask::diagonal, false}, Shape {6, 1, 1, 2, TermMask::noCrossProducts, true}}) {
+          Shape {4, 1, 2, 3, TermMask::diagonal, false}, Shape {6, 1, 1, 2, TermMask::noCrossProducts, true},
+          Shape {6, 2, 2, 2, TermMask::noCrossProducts, false}}) {
         INFO(s.n << " states, " << s.m << " inputs, " << s.p << " outputs, degree " << s.degree);
         const auto model = drawn(s.n, s.m, s.p, s.degree, s.mask, s.offset);
         const Index N = 601;  // more than one block, and no multiple of four
