@@ -87,6 +87,25 @@ TEST_CASE("The standard errors are those of repeated takes", "[fit][slow]")
     }
 }
 
+TEST_CASE("A law that the model lacks widens the errors beyond the noise that it looks like", "[fit]")
+{
+    bench::Loudspeaker truth;
+    auto setup = smallSetup();
+    const auto straight = bench::measure(truth, setup);
+    double reach = 0.0;
+    for (const double x : straight.find(Quantity::displacement)->samples)
+        reach = std::max(reach, std::abs(x));
+    truth.stiffness = bench::Curve {bench::Curve::Shape::coshSpring, 0.0, reach}.scaledTo(0.1, reach);
+    const auto [model, summary] = fitLinear(bench::measure(truth, setup));
+    CHECK(summary.chiSquaredPerValue > 2.0);
+    const auto K = firstParameterOf(model, 0) + 5;
+    REQUIRE(parametersOf(model)[static_cast<std::size_t>(K)]->name == "K");
+    const double asNoise = std::sqrt(model.covariance(K, K)), told = model.baseParameter("K").standardError;
+    INFO("K is " << model.baseParameter("K").value << " +- " << told << ", as noise " << asNoise);
+    CHECK(told > 1.5 * asNoise);
+    CHECK(widenedCovariance(model)(K, K) == Approx(told * told));
+}
+
 TEST_CASE("What is visited is what the bench's cone and coil did", "[fit]")
 {
     auto setup = smallSetup();

@@ -243,3 +243,21 @@ TEST_CASE("A prior pulls a parameter towards zero as one more measurement would"
     CHECK(sum.N(6, 6) == Approx(1.0 / 100.0));
     CHECK(sum.N.topLeftCorner(6, 6).isZero());
 }
+
+TEST_CASE("Pulls of bands add up to the gradient, those of a level together")
+{
+    auto record = someRecord();
+    const auto model = bent();
+    const auto active = freeParameters(model);
+    auto fits = outputError(model, record, {0, 1}, active, {});
+    const auto sum = sumOf(fits);
+    REQUIRE(sum);
+    for (const bool apart : {false, true}) {
+        record.sections[0].level = 0;
+        record.sections[1].level = apart ? 1 : 0;
+        const auto pulls = pullsOf(fits, record, {0, 1});
+        CHECK(pulls.cols() == (apart ? 2 : 1) * Residual::bands);
+        CHECK((pulls.rowwise().sum() - sum->g).norm() < 1e-9 * sum->g.norm());
+    }
+    CHECK(pullsOf(outputError(model, record, {0, 1}, {}, {}), record, {0, 1}).size() == 0);
+}

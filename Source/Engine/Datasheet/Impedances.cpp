@@ -47,7 +47,7 @@ double resistanceFrequency(const Model& model)
 {
     constexpr double known = 0.02;
     const auto& Re = model.baseParameter("Re");  // the first of all parameters
-    const double error = model.covariance.size() > 0 && model.covariance(0, 0) != 0.0 ? Re.standardError : 0.0;
+    const double error = model.covariance.size() > 0 ? std::sqrt(widenedCovariance(model)(0, 0)) : 0.0;
     if (model.components.size() < 2 || error <= known * std::abs(Re.value))  // not a number: not known
         return 0.0;
     const double low = model.components.back().operatingRange.lowFrequency;
