@@ -18,7 +18,7 @@ namespace excursion {
 /// them).
 namespace curve {
 
-inline constexpr int maximumDegree = 18;
+inline constexpr int maximumDegree = 26;
 
 /// Monomial coefficients b_0..b_n of sum c_k [T_k - T_k(0)], by the recurrence T_{k+1} = 2 s T_k - T_{k-1}.
 template <class T>
