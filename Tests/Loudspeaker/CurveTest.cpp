@@ -141,3 +141,25 @@ TEST_CASE("A law's band is not that of parameters on which it does not depend, a
     model.covariance(first, first) = unknown;
     CHECK(std::isnan(laws(model).front().halfWidth.front()));
 }
+
+TEST_CASE("Rms(v) is the cosine form of the Chebyshev polynomials over the rounded speed, at every degree", "[curve]")
+{
+    const auto& effect = effectNamed("damping-velocity");
+    OperatingRange visited;
+    visited.velocity = 0.7;
+    constexpr double e = 0.02;  // what rounds the speed at rest
+    for (int n = 1; n <= curve::maximumDegree; ++n) {
+        visited.degree = n;
+        auto parameters = effect.parameters(visited);
+        std::vector<double> values(parameters.size(), 0.0);
+        values[static_cast<std::size_t>(n) - 1] = 1.0;  // c_n alone
+        double worst = 0.0;
+        for (double w = -1.0; w <= 1.0; w += 1.0 / 64.0) {
+            const double y = std::clamp(2.0 * (std::sqrt(w * w + e * e) - e) - 1.0, -1.0, 1.0),
+                         truth = std::cos(n * std::acos(y)) - std::cos(n * std::numbers::pi);
+            worst = std::max(worst, std::abs(effect.lawAt(visited, values.data(), w * visited.velocity) - truth));
+        }
+        INFO("degree " << n << ": " << worst);
+        CHECK(worst < rounding(n));
+    }
+}

@@ -74,13 +74,11 @@ TEST_CASE("Directions that data does not see pull nothing", "[numerics]")
           == 0.0);
 }
 
-TEST_CASE("What priors hold and what a search has left do not count as scatter", "[numerics]")
+TEST_CASE("What priors hold does not count as scatter", "[numerics]")
 {
     const Eigen::MatrixXd JtJ = Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
     Eigen::MatrixXd N = JtJ, pulls(3, 2);
     N(2, 2) = 50.0;
     pulls << 1.0, -1.0, 2.0, -2.0, 0.0, 0.0;
     CHECK(overdispersionOf(N, JtJ, pulls) == Approx((2.0 + 8.0) / 2.0));
-    pulls << 3.0, 0.0, 0.0, 0.0, 0.0, 0.0;  // all of it in one group
-    CHECK(overdispersionOf(N, JtJ, pulls) == 0.0);
 }

@@ -260,13 +260,13 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
                                                        + std::to_string(jump.realization) + ", after used period "
                                                        + std::to_string(jump.period);
         problems.push_back(
-            {"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
+            {"gain-jump", quantity, isOfGain(jump) ? jump.gainDb : jump.db, "dB", jump.db > -30.0,
              isOfGain(jump)
                  ? "The gain of the " + who + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at " + place
                        + ": look for a loose contact, an automatic gain or a switched range; record again."
-                 : "At " + place + ", the " + who + " channel changes by " + rounded(jump.db, 0)
-                       + " dB of its power and keeps its gain: the sensor, or what it sees, has moved; "
-                         "record again."});
+                 : "At " + place + ", what changes in the " + who + " channel is " + rounded(-jump.db, 0)
+                       + " dB below its signal, and its gain stays: the sensor, or what it sees, has "
+                         "moved; record again."});
     }
     std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
 
@@ -308,8 +308,9 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
         }
     shared /= std::max(weights, 1e-300);
     const bool common = drifting > 1 && std::all_of(judged.begin(), judged.end(), [shared](const Drift& d) {
-                            return std::abs(d.shift.samples - shared)
-                                   < 6.0 * d.shift.standardError + 0.1 * std::abs(shared);
+                            return !d.shift.steady
+                                   || std::abs(d.shift.samples - shared)
+                                          < 6.0 * d.shift.standardError + 0.1 * std::abs(shared);
                         });
     for (const auto& drift : judged) {
         if (!drift.drifts)

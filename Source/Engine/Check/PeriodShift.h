@@ -35,7 +35,8 @@ struct PeriodJump {
     /// The same signal through a system, or a gain, that has changed for good: the difference is what a gain that is
     /// smooth over frequency makes of the period. Neither were samples lost, which turns it, nor did anything knock.
     bool change = false;
-    double gainDb = 0.0;  ///< by which it has changed, from the period before that pair until the last one
+    double gainDb = 0.0;  ///< by which it has changed, from the period before that pair until the last one, or within
+                          ///< that pair if that is more
     /// By how much the rest position of the cone has moved, in the displacement's unit, where that is most of what is
     /// not constant in the difference. Else 0. Such pairs need not differ more than others.
     double moved = 0.0;

@@ -78,10 +78,12 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
     const Eigen::MatrixXd C_rb = C(rest, told);
     const Eigen::LDLT<Eigen::MatrixXd> C_bb(Eigen::MatrixXd(C(told, told)));
     const Eigen::VectorXd moved = Eigen::VectorXd(theta(rest)) - C_rb * C_bb.solve(Eigen::VectorXd(theta(told)));
+    constexpr double leastShare = 1e-12;
     lower.covariance = Eigen::MatrixXd(C(rest, rest)) - C_rb * C_bb.solve(C_rb.transpose());
     for (Eigen::Index j = 0; j < lower.covariance.rows(); ++j)
-        if (lower.covariance(j, j) < 0.0)  // of rounding
-            lower.covariance(j, j) = 0.0;
+        if (const double before = C(rest[static_cast<std::size_t>(j)], rest[static_cast<std::size_t>(j)]);
+            lower.covariance(j, j) < leastShare * before)  // of rounding
+            lower.covariance(j, j) = leastShare * before;
     const auto left = parametersOf(lower);
     for (std::size_t j = 0; j < left.size(); ++j) {
         const auto row = static_cast<Eigen::Index>(j);

@@ -6,8 +6,8 @@
 namespace excursion {
 
 /// A fit by simulation on all sections that are not held out, as thorough as worthwhile: rough far above the noise,
-/// with gradients from fed laws near it. At the noise laws are expanded further where that still pays. What does not pay
-/// of any law is taken back.
+/// with gradients from fed laws near it. At the noise laws are expanded further where that still pays. What does not
+/// pay of any law is taken back.
 /// @param toTheEnd  fits as far as possible if something is left, before the remainder is called unknown
 FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheEnd, const Progress& = {});
 

@@ -223,6 +223,9 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
                                          overdispersionOf(last.N, lastOfData, lastPulls));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
+    for (auto* p : all)  // what is held is as well known as before
+        if (p->free)
+            p->standardError = std::numeric_limits<double>::quiet_NaN();
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         for (Eigen::Index c = 0; c < P; ++c)

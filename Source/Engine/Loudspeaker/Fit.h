@@ -44,8 +44,8 @@ OperatingRange visitedRange(const Model&, const Record&, int degree = 6);
 /// Output-error fit of all free parameters,
 ///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,
 /// by Levenberg-Marquardt with automatic derivatives of the simulation. Leaves standard errors and the covariance in
-/// the model; if the residuals exceed the noise, both are scaled up accordingly. Standard errors are also as much
-/// larger as the pulls of bands scatter (overdispersionOf()).
+/// the model; if the residuals exceed the noise, both are scaled up accordingly. Standard errors grow further where
+/// bands disagree (overdispersionOf()). What is free and not told has none.
 FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
                const Progress& = {});
 

@@ -78,10 +78,10 @@ double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, co
     double scatter = 0.0, told = 0.0;
     for (Eigen::Index k = 0; k < N.rows(); ++k)
         if (spectrum.values[k] > least) {
-            scatter += (along.row(k).squaredNorm() - std::pow(along.row(k).sum(), 2)) / spectrum.values[k];
+            scatter += along.row(k).squaredNorm() / spectrum.values[k];
             told += axes.row(k).dot(JtJ * axes.row(k).transpose()) / spectrum.values[k];
         }
-    return told > 0.0 ? std::max(scatter, 0.0) / told : 0.0;
+    return told > 0.0 ? scatter / told : 0.0;
 }
 
 Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector<Eigen::Index>& use)

@@ -41,11 +41,10 @@ struct ScaledSpectrum {
 Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance);
 
 /// By how much pulls g_k = J_k^T r_k of groups of residuals scatter at a minimum, over what noise of unit variance
-/// makes of them at most:
-///     (sum_k g_k^T N^-1 g_k - g^T N^-1 g) / tr(N^-1 J^T J),   g = sum_k g_k,
-/// where g is what a search that stopped early has left. Residuals that are noise pull at random, and it is below 1.
-/// Those that a model in a wrong shape leaves pull each group its own way, and only their sum is zero: parameters
-/// scatter by so much more, as variance, than the data says.
+/// makes of them at most on average:
+///     sum_k g_k^T N^-1 g_k / tr(N^-1 J^T J).
+/// Residuals that are noise pull at random. Those that a model in a wrong shape leaves pull each group its own way, and
+/// only their sum is zero: parameters scatter by so much more, as variance, than the data says.
 /// @param N      J^T J and the curvature of priors
 /// @param JtJ    of the data alone
 /// @param pulls  one column a group

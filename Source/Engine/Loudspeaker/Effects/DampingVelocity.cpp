@@ -61,18 +61,12 @@ public:
     void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::sqrt;
-        // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
+        // Powers of y = 2 s - 1: those of s would cancel to the square of the digits.
         const int n = e.degree;
-        std::array<T, curve::maximumDegree + 1> b;
-        curve::prepare(n, p, b.data());
-        for (int j = 0; j <= n; ++j)
-            c[j] = T(0.0);
-        for (int j = n; j >= 0; --j) {
-            for (int k = n; k >= 0; --k)
-                c[k] = (k > 0 ? 2.0 * c[k - 1] : T(0.0)) - c[k];
-            c[0] += b[static_cast<std::size_t>(j)];
-        }
-        c[0] = T(0.0);  // no difference at rest
+        curve::prepare(n, p, c);
+        c[0] = T(0.0);  // no difference at rest, y = -1
+        for (int j = 1; j <= n; ++j)
+            c[0] += j % 2 == 0 ? -c[j] : c[j];
         c[n + 1] = p[n];
         c[n + 2] = p[n + 1];
         c[n + 3] = p[n + 2];
@@ -103,7 +97,7 @@ private:
         const int n = e.degree;
         const T square = w * w, off = w - c[n + 3];
         const T s = sqrt(off * off + rounding * rounding) - c[n + 4];
-        T value = curve::polynomial(n, c, s);
+        T value = curve::polynomial(n, c, T(2.0 * s - 1.0));
         value += w * (c[n + 1] + square * c[n + 2]);
         return value > T(0.0) ? value * reach : value;
     }
