@@ -30,6 +30,15 @@ struct Fitted {
     FitSummary summary;
 };
 
+/// The largest displacement of a take.
+double reachOf(const Measurement& take)
+{
+    double reach = 0.0;
+    for (const double x : take.find(Quantity::displacement)->samples)
+        reach = std::max(reach, std::abs(x));
+    return reach;
+}
+
 Fitted fitLinear(const Measurement& take)
 {
     auto record = makeRecord(take);
@@ -91,10 +100,7 @@ TEST_CASE("A law that the model lacks widens the errors beyond the noise that it
 {
     bench::Loudspeaker truth;
     auto setup = smallSetup();
-    const auto straight = bench::measure(truth, setup);
-    double reach = 0.0;
-    for (const double x : straight.find(Quantity::displacement)->samples)
-        reach = std::max(reach, std::abs(x));
+    const double reach = reachOf(bench::measure(truth, setup));
     truth.stiffness = bench::Curve {bench::Curve::Shape::coshSpring, 0.0, reach}.scaledTo(0.1, reach);
     const auto [model, summary] = fitLinear(bench::measure(truth, setup));
     CHECK(summary.chiSquaredPerValue > 2.0);
@@ -165,10 +171,7 @@ TEST_CASE("A law of the bench comes back as the law of the effect", "[fit][slow]
     auto setup = smallSetup();
     setup.excitation.levels = {1.0, 4.0};
     setup.excitation.realizations = 3;
-    const auto straight = bench::measure(truth, setup);
-    double reach = 0.0;
-    for (const double x : straight.find(Quantity::displacement)->samples)
-        reach = std::max(reach, std::abs(x));
+    const double reach = reachOf(bench::measure(truth, setup));
     truth.forceFactor = bench::Curve {bench::Curve::Shape::gaussianGap, 0.1 * reach, reach}.scaledTo(0.2, reach);
     auto record = makeRecord(bench::measure(truth, setup));
     auto model = startModel(record);

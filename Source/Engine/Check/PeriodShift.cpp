@@ -289,10 +289,11 @@ std::optional<PeriodShift> periodShift(const AveragedPeriods& averages, const Ch
         const auto spectra = earlySpectra(take, channel, level, m, lines);
         for (std::size_t p = 0; p + 1 < spectra.size(); ++p) {
             const auto cross = crossSpectrum(spectra[p], spectra[p + 1]);
-            pairs.push_back(shiftOf(cross, powerOf(spectra[p]), lines, e.period));
+            const auto own = powerOf(spectra[p]);
+            pairs.push_back(shiftOf(cross, own, lines, e.period));
             for (std::size_t i = 0; i < sum.size(); ++i) {
                 sum[i] += cross[i];
-                power[i] += std::norm(spectra[p][i]);
+                power[i] += own[i];
             }
         }
     }

@@ -217,8 +217,9 @@ Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& recor
     std::map<int, Eigen::MatrixXd> byLevel;
     for (std::size_t s = 0; s < fits.size(); ++s)
         if (fits[s].pulls.size() > 0) {
-            auto& pulls = byLevel[record.sections[sections[s]].level];
-            pulls = pulls.size() == 0 ? fits[s].pulls : Eigen::MatrixXd(pulls + fits[s].pulls);
+            const auto [own, isFirst] = byLevel.try_emplace(record.sections[sections[s]].level, fits[s].pulls);
+            if (!isFirst)
+                own->second += fits[s].pulls;
         }
     if (byLevel.empty())
         return {};

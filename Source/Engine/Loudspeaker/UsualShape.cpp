@@ -2,7 +2,6 @@
 // A linear effect found anew in the shape that is usual for it, with all else as it is.
 #include "Engine/Loudspeaker/FitResponse.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
