@@ -2,6 +2,7 @@
 #include "SeedDriver.h"
 
 #include "Engine/Diagnosis/LawDegrees.h"
+#include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
 #include "Engine/Diagnosis/Refine.h"
 #include "Engine/Estimate/MakeRecord.h"
@@ -105,4 +106,33 @@ TEST_CASE("The last fit gives a law the coefficients that it lacks, and no other
         for (const auto& p : bent.model.components[1].parameters)
             CHECK((!p.free || std::isfinite(p.standardError)));
     }
+}
+
+TEST_CASE("A law goes beyond the 18th degree near the noise alone", "[diagnosis]")
+{
+    // Rms(v) for friction: each degree brings something, as none is the law.
+    auto record = makeRecord(seedTake({{"friction", 0.3}}));
+    const auto* damping = &effectNamed("damping-velocity");
+    const auto raisedFrom = [&](int degree) {
+        auto model = startModel(record);
+        adapt(record, model);
+        model = withEffect(std::move(model), *damping, visitedRange(model, record, degree));
+        FitOptions options;
+        options.substeps = 1;
+        options.search = {15, 1e-4};
+        const auto summary = fitFed(model, record, estimationSections(record), options);
+        REQUIRE(summary.usable());
+        UNSCOPED_INFO("chi-square " << summary.chiSquaredPerValue << " of degree " << degree);
+        raiseDegrees(model, record, {});
+        return model.components[1].operatingRange.degree;
+    };
+    CHECK(raisedFrom(6) == 10);
+    CHECK(raisedFrom(18) == 18);
+    for (auto& section : record.sections)  // of sensors so noisy that the same law leaves little beside it
+        for (auto& channel : section.deviation)
+            for (double& deviation : channel)
+                deviation *= 40.0;
+    CHECK(raisedFrom(18) == 22);
+    record.noiseKnown = false;
+    CHECK(raisedFrom(18) == 18);
 }

@@ -11,6 +11,14 @@
 
 namespace excursion {
 
+namespace {
+
+/// While much is missing a law of a higher degree takes the place of what is missing, and holds it with coefficients
+/// that every later fit has to carry.
+constexpr int highestFarOff = 18;
+
+}  // namespace
+
 std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, double share,
                                       int by)
 {
@@ -19,9 +27,9 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     Model higher = model;
     std::vector<std::size_t> candidates;
     for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (model.components[k].effect->law()
-            && model.components[k].operatingRange.degree + by <= curve::maximumDegree) {
-            higher = withDegree(std::move(higher), k, model.components[k].operatingRange.degree + by);
+        if (const int degree = model.components[k].operatingRange.degree + by;
+            model.components[k].effect->law() && degree <= curve::maximumDegree) {
+            higher = withDegree(std::move(higher), k, degree);
             candidates.push_back(k);
         }
     if (candidates.empty())
@@ -54,12 +62,15 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     const double least = record.noiseKnown && unit < nearNoise ? share * now : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {
+        const int degree = model.components[k].operatingRange.degree + by;
+        if (degree > highestFarOff && !(record.noiseKnown && unit < nearNoise))
+            continue;
         auto use = old;
         use.insert(use.end(), added[k].begin(), added[k].end());
         std::sort(use.begin(), use.end());
         const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
         if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
-            result = withDegree(std::move(result), k, model.components[k].operatingRange.degree + by);
+            result = withDegree(std::move(result), k, degree);
             raised.push_back(model.components[k].effect->id());
         }
     }
