@@ -8,6 +8,7 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace excursion::cli {
 namespace {
@@ -54,7 +55,9 @@ void LiveLadder::show(const Rung& rung)
 {
     const auto& comparison = rung.comparison;
     if (rung.added.empty() && rungs_ > 0) {
-        terminal_.say("\nThe recorder's coupling was found. The ladder begins again without it:");
+        terminal_.say(std::exchange(again_, true)
+                          ? "\nThat left more. The ladder stands as it was:"
+                          : "\nThe recorder's coupling was found. The ladder begins again without it:");
         rungs_ = 0;
         titles_.clear();
     }

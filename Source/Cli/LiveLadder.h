@@ -28,6 +28,7 @@ private:
     Terminal& terminal_;
     std::vector<std::string> titles_;
     int rungs_ = 0;
+    bool again_ = false;  ///< the ladder has begun again
 };
 
 }  // namespace excursion::cli

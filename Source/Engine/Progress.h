@@ -25,6 +25,9 @@ struct Progress {
             report(fraction, what);
     }
 
+    /// For a part of the work that stops when asked to, and reports nothing.
+    Progress silent() const { return {.report = {}, .stop = stop}; }
+
     /// A stretch [from, to] of this progress, to hand to a part of the work.
     Progress part(double from, double to) const
     {

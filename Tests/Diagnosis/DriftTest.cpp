@@ -140,6 +140,20 @@ TEST_CASE("Where nothing has drifted nothing moves, and what does not drift is n
     CHECK_FALSE(right.warmer);
 }
 
+TEST_CASE("What is not to move stays, also where a take tells less than the model's own", "[drift]")
+{
+    const auto& before = fitted();
+    auto take = shortTake(drawn().speaker);
+    std::erase_if(take.channels, [](const Channel& c) { return c.quantity == Quantity::current; });
+    const auto drift = followDrift(before, recordOf(take, before), {"K"});
+    REQUIRE(drift.parameters.size() == 1);
+    for (const auto& p : before.base().parameters) {
+        CAPTURE(p.name);
+        CHECK(drift.model.baseParameter(p.name).free == p.free);
+        CHECK((drift.model.baseParameter(p.name).value == p.value) == (p.name != "K"));
+    }
+}
+
 TEST_CASE("An impedance tells a drift as well", "[drift]")
 {
     bench::Loudspeaker speaker;

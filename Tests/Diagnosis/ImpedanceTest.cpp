@@ -2,6 +2,7 @@
 // Ladders of impedances in closed form: what hides behind something else is found with it, and what is not there is
 // not.
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Diagnosis/Improvement.h"
 
 #include <catch2/catch.hpp>
 
@@ -22,14 +23,14 @@ Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 /// A woofer as its parts are: a coil with a chain of resistors beside inductors, a cone on a suspension, and what its
 /// motion feels besides.
 struct Woofer {
-    bool port = false, part = false, leak = false;
+    bool port = false, part = false, leak = false, eddies = true;
 
     Complex impedance(double frequency) const
     {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency);
         Complex coil = 5.8 + 1.5e-4 * s;
         for (const auto& [R, L] : {std::pair {1.1, 6e-4}, {3.0, 2.2e-4}, {19.0, 4e-4}})
-            coil += parallel(R, s * L);
+            coil += eddies ? parallel(R, s * L) : 0.0;
         const double Bl = 7.2, m = 0.018, K = 1100.0;
         Complex mechanical = 1.4 + s * m + K / s;
         if (port) {  // air whose pressure moves the mass in a port of 33 Hz and leaks
@@ -67,6 +68,29 @@ struct Woofer {
 double errorDb(const Rung& rung) { return rung.comparison.channels.front().total.db; }
 
 }  // namespace
+
+TEST_CASE("An effect that is asked for comes in, however little a frequency response gains by it",
+          "[improve][responses]")
+{
+    Improvement work(Woofer {.eddies = false}.measured());
+    work.begin();
+    const auto added = [&](const std::string& id) {
+        CAPTURE(id);
+        auto other = work;
+        other.add(id);
+        CHECK(other.ladder().model().has(id));
+        CHECK(other.ladder().rungs.back().added == id);
+        CHECK_THROWS_WITH(other.add(id), Catch::Contains("already"));
+    };
+    int gainless = 0;
+    for (const auto& ranked : work.ladder().rungs.back().diagnosis.ranking)
+        if (!ranked.model.has(ranked.effect)) {
+            added(ranked.effect);
+            ++gainless;
+        }
+    CHECK(gainless > 0);  // else this asks nothing
+    added(work.ladder().rungs.back().diagnosis.ranking.front().effect);
+}
 
 TEST_CASE("A port and a part that swings are found together, and neither where it is not",
           "[.thorough][improve][responses]")

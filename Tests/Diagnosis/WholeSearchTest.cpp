@@ -6,6 +6,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
+#include <stop_token>
+#include <vector>
+
 using namespace excursion;
 
 TEST_CASE("What a fuller model missed clearly is not tried again", "[diagnosis]")
@@ -77,4 +81,28 @@ TEST_CASE("Linear effects that only make sense together are found together", "[d
     const auto found = search.withLinear({&effectNamed("creep"), &effectNamed("eddy-currents")}, base);
     CHECK(found.has("creep"));
     CHECK(found.has("eddy-currents"));
+}
+
+TEST_CASE("The steps of a search end soon after they are asked to", "[diagnosis]")
+{
+    const CreepingTake creeping;
+    const auto model = withEffect(creeping.base, effectNamed("creep"), visitedRange(creeping.base, creeping.record));
+    std::stop_source stop;
+    WholeSearch search(creeping.base, creeping.record, {}, Progress {.report = {}, .stop = stop.get_token()});
+    search.chooseResiduals(model);
+    WholeSearch::Removals tried;
+    const auto keepsAll = [](const Removal&) { return true; };
+    const std::vector<std::function<void(Model&)>> steps {
+        [&](Model& m) { search.fit(m); },
+        [&](Model& m) { search.takeOut(m, true, keepsAll, tried); },
+    };
+    for (const auto& step : steps) {
+        auto free = model;
+        CHECK_NOTHROW(step(free));
+    }
+    stop.request_stop();
+    for (const auto& step : steps) {
+        auto stopped = model;
+        CHECK_THROWS_WITH(step(stopped), Catch::Contains("cancelled"));
+    }
 }

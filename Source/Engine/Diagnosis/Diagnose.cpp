@@ -123,7 +123,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
         const auto& first = diagnosis.ranking.front();
         if (!first.vote.standsAlone()
             && excess(first.confirmedChiSquaredPerValue) > mostLeft * excess(before.chiSquaredPerValue)) {
-            const auto beyond = score(first.model, record, test, {});
+            const auto beyond = score(first.model, record, test, progress.silent());
             if (leastLeft(scores.chiSquaredPerValueByChannel, beyond.togetherChiSquaredPerValue) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;
         }

@@ -96,7 +96,7 @@ void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, 
                                     [&](const RankedEffect& r) { return r.effect == next.added; });
     if (place == diagnosis.ranking.end())
         throw Error(Error::Kind::usage, "The diagnosis has not tried the effect \"" + next.added + "\".");
-    if (squaredError(next.model, targets) < place->confirmedChiSquaredPerValue)
+    if (!place->model.has(next.added) || squaredError(next.model, targets) < place->confirmedChiSquaredPerValue)
         *place = triedByResponse(effectNamed(next.added), next.model, targets, before);
     place->significant = true;
     place->vote = next.vote;

@@ -77,7 +77,8 @@ namespace {
 /// a quick fit.
 /// @param change  of component k; false if there is nothing to change
 bool reshapeEach(Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                 const FitOptions& options, const std::function<bool(Model& anew, std::size_t k)>& change)
+                 const FitOptions& options, const Progress& silent,
+                 const std::function<bool(Model& anew, std::size_t k)>& change)
 {
     constexpr double worthIt = 0.998;
     double now = std::numeric_limits<double>::infinity();
@@ -90,31 +91,32 @@ bool reshapeEach(Model& model, const Record& record, const std::vector<std::size
             return any;
         },
         [&](Model& anew) {
-            return quickFit(anew, record, sections, options).usable()
+            return quickFit(anew, record, sections, options, silent).usable()
                    && falls(now, quickCost(anew, record, sections, options), worthIt);
         });
 }
 
 }  // namespace
 
-bool wakeShapes(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+bool wakeShapes(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
+                const Progress& progress)
 {
-    return reshapeEach(model, record, sections, options,
+    return reshapeEach(model, record, sections, options, progress.silent(),
                        [](Model& anew, std::size_t k) { return wakeShapesOf(anew.components[k]); });
 }
 
 bool findUsualShapes(Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                     const FitOptions& options)
+                     const FitOptions& options, const Progress& progress)
 {
     const auto isUnusual = [](const Component& component) { return isAtWork(component) && hasUnusualShape(component); };
     if (!hasPeriods(record) || std::none_of(model.components.begin(), model.components.end(), isUnusual))
         return false;
     // The other shape is to win by itself, not by the steps that it gets.
     if (auto fitted = model;
-        quickFit(fitted, record, sections, options).usable()
+        quickFit(fitted, record, sections, options, progress.silent()).usable()
         && quickCost(fitted, record, sections, options) < quickCost(model, record, sections, options))
         model = std::move(fitted);
-    return reshapeEach(model, record, sections, options, [&](Model& anew, std::size_t k) {
+    return reshapeEach(model, record, sections, options, progress.silent(), [&](Model& anew, std::size_t k) {
         const auto& component = anew.components[k];
         if (!isUnusual(component))
             return false;
@@ -124,7 +126,7 @@ bool findUsualShapes(Model& model, const Record& record, const std::vector<std::
 }
 
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                   const FitOptions& options)
+                   const FitOptions& options, const Progress& progress)
 {
     if (!hasPeriods(record))
         return false;
@@ -132,15 +134,15 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     constexpr double worthIt = 0.95;
     auto glance = options;
     glance.search = {3, 1e-2};
-    const bool woken = wakeShapes(model, record, sections, options);
+    const bool woken = wakeShapes(model, record, sections, options, progress);
     double now = quickCost(model, record, sections, options);
     return findAnew(
                model, LinearResponses(withoutLaws(model, record, options.threads)),
                [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
                [&](Model& anew) {
-                   if (!quickFit(anew, record, sections, glance).usable()
+                   if (!quickFit(anew, record, sections, glance, progress.silent()).usable()
                        || quickCost(anew, record, sections, options) > now
-                       || !quickFit(anew, record, sections, options).usable())
+                       || !quickFit(anew, record, sections, options, progress.silent()).usable())
                        return false;
                    return falls(now, quickCost(anew, record, sections, options), worthIt);
                })

@@ -56,8 +56,10 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
         };
         if (work.beginUncoupled(progress.part(done, done))) {
             climb();
-            if (!(leaves(work) < leaves(before)))
+            if (!(leaves(work) < leaves(before))) {
                 work = before;
+                tell();
+            }
         }
     }
     auto ladder = work.ladder();

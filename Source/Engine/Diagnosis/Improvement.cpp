@@ -177,7 +177,7 @@ bool Improvement::addTogether(const Progress& progress)
     if (rungs.empty())
         return false;
     rungs.back() = judged(std::move(rungs.back()), data, progress.part(0.8, 1.0));
-    use(std::move(data));
+    use(std::move(data), progress.silent());
     ladder_.rungs.pop_back();  // comes again, with its diagnosis
     for (auto& rung : rungs)
         keep(std::move(rung));
@@ -239,7 +239,7 @@ Improvement::Together Improvement::together(Record& record, const Progress& prog
         return {};
     double reached = base.comparison.chiSquaredPerValue;
     if (oneIsKnown)  // the noise may be another one now
-        if (const auto byItsTrial = tryCompare(named.front().model, record, {0, false}))
+        if (const auto byItsTrial = tryCompare(named.front().model, record, {0, false}, progress.silent()))
             reached = std::min(reached, byItsTrial->chiSquaredPerValue);
     if (!(rungs.back().comparison.chiSquaredPerValue < reached))
         return {};
@@ -261,7 +261,7 @@ void Improvement::add(const std::string& id, const Progress& progress)
     const auto* ranked = last.diagnosis.find(id);
     if (ranked)
         rung.predictedErrorDb = ranked->predictedErrorDb;
-    if (ranked && !ranked->model.components.empty())
+    if (ranked && ranked->model.has(id))  // a trial that lowered nothing is not kept
         rung.model = ranked->model;
     else
         std::visit(
@@ -270,20 +270,20 @@ void Improvement::add(const std::string& id, const Progress& progress)
     rung.fit = std::visit(
         [&](auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data);
     rung = judged(std::move(rung), data, progress.part(0.5, 1.0));
-    use(std::move(data));
+    use(std::move(data), progress.silent());
     keep(std::move(rung));
 }
 
 /// Compares and diagnoses all rungs anew where the noise is another; one that runs away there stays as it was.
-void Improvement::use(Data data)
+void Improvement::use(Data data, const Progress& silent)
 {
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
     if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
         now && before && hasSilentNoise(*now) != hasSilentNoise(*before))
         for (auto& rung : rungs)
-            if (auto comparison = tryCompare(rung.model, *now)) {
+            if (auto comparison = tryCompare(rung.model, *now, {rung.fit.substeps, true}, silent)) {
                 rung.comparison = std::move(*comparison);
-                rung.diagnosis = diagnose(rung.model, *now, rung.comparison, options_.diagnose);
+                rung.diagnosis = diagnose(rung.model, *now, rung.comparison, options_.diagnose, silent);
                 rung.diagnosis.problems = ladder_.problems;
             }
     ladder_.rungs = std::move(rungs);

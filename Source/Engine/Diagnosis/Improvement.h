@@ -73,7 +73,7 @@ private:
     Together together(const Spectra&, const Progress&) const;
     Together together(Record&, const Progress&) const;
     Rung judged(Rung, const Data&, const Progress&) const;
-    void use(Data);
+    void use(Data, const Progress& silent);
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence from the last rung's diagnosis
 

@@ -154,11 +154,11 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         summary = *raised;
     if (hasPeriods(record)) {
         if (record.noiseKnown && (summary.chiSquaredPerValue > atNoise || !summary.onlyNoise))
-            findPartsAnew(model, record, sections, quick);
+            findPartsAnew(model, record, sections, quick, progress);
         else
-            wakeShapes(model, record, sections, quick);
+            wakeShapes(model, record, sections, quick, progress);
         if (record.noiseKnown && summary.chiSquaredPerValue < nearNoise)
-            findUsualShapes(model, record, sections, quick);
+            findUsualShapes(model, record, sections, quick, progress);
         quick.search = {15, 1e-4};
         if (!quick.fedGradient)
             summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));

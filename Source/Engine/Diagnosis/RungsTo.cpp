@@ -150,7 +150,7 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
 std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, const DiagnoseOptions& options,
                           const Progress& progress)
 {
-    const auto reached = tryCompare(whole.model, record);
+    const auto reached = tryCompare(whole.model, record, {whole.fit.substeps, true}, progress.silent());
     if (!reached)
         return {};
     const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
@@ -178,7 +178,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
                 trial.comparison = *reached;
             } else {
                 trial.fit = fitLinear(trial.model, whole.model, record, brief, part.part(0.4, 0.9));
-                auto comparison = tryCompare(trial.model, record);
+                auto comparison = tryCompare(trial.model, record, {trial.fit.substeps, true}, progress.silent());
                 if (!comparison)
                     continue;
                 trial.comparison = std::move(*comparison);

@@ -171,7 +171,7 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, bool mayBeCoupled,
                const Progress& progress)
 {
-    WholeSearch search(base, record, options);
+    WholeSearch search(base, record, options, progress);
     auto found = best(base, record, search, options, mayBeCoupled, progress.part(0.0, 0.7));
     if (found.whole.coupling > 0.0 || !found.whole.fit.usable())
         return found.whole;
@@ -179,7 +179,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));
     auto silent = record;
     useSilentNoise(silent);
-    WholeSearch closer(base, silent, options);
+    WholeSearch closer(base, silent, options, progress);
     found.tried.clear();
     auto closely = found.whole.model;
     const auto run = refine(closely, silent, options, progress.part(0.7, 0.8));

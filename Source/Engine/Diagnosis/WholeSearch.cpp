@@ -25,8 +25,8 @@ bool mayStandIn(const Model& model, const std::string& effect)
            && !component.effect->parts(component.operatingRange).empty();
 }
 
-WholeSearch::WholeSearch(const Model& base, const Record& record, const FitOptions& options)
-    : base_(base), record_(record), sections_(trialSections(record, 2)), options_(options)
+WholeSearch::WholeSearch(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+    : base_(base), record_(record), sections_(trialSections(record, 2)), options_(options), silent_(progress.silent())
 {
     test_.threads = options.threads;
 }
@@ -56,7 +56,7 @@ FitSummary WholeSearch::glanceAt(Model& model) const
 {
     auto options = within(glance);
     options.fedGradient = false;
-    return quickFit(model, record_, sections_, options, {});
+    return quickFit(model, record_, sections_, options, silent_);
 }
 
 FitSummary WholeSearch::fit(Model& model, const LeastSquaresOptions& steps, const Progress& progress) const
@@ -69,18 +69,18 @@ FitSummary WholeSearch::fitExactly(Model& model) const
 {
     auto options = within(brief);
     options.fedGradient = false;
-    return excursion::fit(model, record_, sections_, options, {});
+    return excursion::fit(model, record_, sections_, options, silent_);
 }
 
 void WholeSearch::findPartsAnew(Model& model) const
 {
-    excursion::findPartsAnew(model, record_, sections_, within(brief));
+    excursion::findPartsAnew(model, record_, sections_, within(brief), silent_);
 }
 
 void WholeSearch::raiseDegrees(Model& model) const
 {
     constexpr double hides = 0.005;  // what lowers the cost by less hides no effect
-    raiseAsItPays(model, record_, sections_, within(brief), test_, hides);
+    raiseAsItPays(model, record_, sections_, within(brief), test_, hides, silent_);
 }
 
 Left WholeSearch::left(const Model& model) const { return left(model, test_.played); }
@@ -92,7 +92,7 @@ Left WholeSearch::left(const Model& model, bool played) const
     plain.played = played;
     plain.substeps = test_.substeps;
     plain.threads = options_.threads;
-    const auto fits = quickError(model, record_, sections_, {}, plain);
+    const auto fits = quickError(model, record_, sections_, {}, plain, silent_);
     const auto sum = sumOf(fits);
     Left left;
     if (!sum)

@@ -74,7 +74,8 @@ std::set<std::string> implausibleIn(const Model&);
 class WholeSearch {
 public:
     /// @param base  what it has stays in every model; it and the record outlive the search
-    WholeSearch(const Model& base, const Record&, const FitOptions&);
+    /// @param progress  asked for whether to stop
+    WholeSearch(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 
     /// Chooses by which residuals is judged from here on: those that are less for this model.
     void chooseResiduals(const Model&);
@@ -86,7 +87,8 @@ public:
     /// beside what is noise for sure, or of the power, which may stand in a few lines, over that of the noise.
     double lost(const Left& more, const Left& less) const;
 
-    FitSummary fit(Model&, const Progress& = {}) const;
+    FitSummary fit(Model&, const Progress&) const;
+    FitSummary fit(Model& model) const { return fit(model, silent_); }
     /// Whether the first two steps of a fit leave so many dB less: near the noise laws are weak, and these go most of
     /// the way.
     bool gainsAtOnce(Model, const Left& before, double dB) const;
@@ -156,7 +158,8 @@ private:
     };
 
     FitOptions within(const LeastSquaresOptions&) const;
-    FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
+    FitSummary fit(Model&, const LeastSquaresOptions&, const Progress&) const;
+    FitSummary fit(Model& model, const LeastSquaresOptions& steps) const { return fit(model, steps, silent_); }
     FitSummary fitExactly(Model&) const;
     FitSummary orBetter(Model&, FitSummary, std::vector<Model> others, const Progress&) const;
     FitSummary glanceAt(Model&) const;
@@ -176,6 +179,7 @@ private:
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions options_;
+    Progress silent_;  ///< of steps that report nothing; they stop when asked to
     std::map<Attempt, Waypoints> tried_;
 };
 

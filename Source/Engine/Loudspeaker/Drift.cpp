@@ -150,8 +150,10 @@ Drift followDrift(const Model& before, const Record& record, const std::vector<s
                   const FitOptions& options, const Progress& progress)
 {
     FitSummary last;
+    auto asGiven = options;
+    asGiven.asGiven = true;
     auto drift = follow(before, drifting, [&](Model& model) {
-        last = fit(model, record, estimationSections(record), options, progress);
+        last = fit(model, record, estimationSections(record), asGiven, progress);
         return last;
     });
     drift.search = last;

@@ -310,7 +310,8 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
     followOthers(model);
-    holdUntold(model, record);
+    if (!options.asGiven)
+        holdUntold(model, record);
     OutputErrorOptions run;
     run.threads = options.threads;
     if (options.fed && hasPeriods(record)) {
