@@ -232,6 +232,75 @@ TEST_CASE("From the sample at which it is switched on nothing passes the limit o
     }
 }
 
+namespace {
+
+/// A tone through modes that follow each other, each for 0.2 s; the largest sample of each.
+std::vector<double> loudestOf(const std::vector<Mode>& modes, ChainControls controls, double amplitude,
+                              double frequency)
+{
+    controls.mode = modes.front();
+    Chain chain(everything(), {48000.0, 2}, controls);
+    constexpr std::size_t block = 480, each = 20 * block;
+    std::vector<double> u(modes.size() * each), loudest(modes.size());
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / 48000.0);
+    for (std::size_t n = 0; n < u.size(); n += block) {
+        controls.mode = modes[n / each];
+        chain.set(controls);
+        chain.process(u.data() + n, u.data() + n, block);
+        const std::size_t from = n % each == 0 ? static_cast<std::size_t>(chain.latency()) : 0;
+        for (std::size_t k = n + from; k < n + block; ++k)
+            loudest[n / each] = std::max(loudest[n / each], std::abs(u[k]));
+    }
+    return loudest;
+}
+
+}  // namespace
+
+TEST_CASE("A trim that moves from behind the loudspeaker to before it passes no limit and makes no burst", "[chain]")
+{
+    for (const double trim : {0.01, 0.1, 4.0, 16.0}) {
+        CAPTURE(trim);
+        auto some = controls(Mode::bypass);
+        some.fullScale = 50.0;
+        some.trim = trim;
+        some.predistortion.voltageLimit = 25.0;
+        for (const auto& before : {std::vector {Mode::speaker, Mode::bypass}, {Mode::speaker}, {Mode::distortion}}) {
+            auto modes = before;
+            modes.push_back(Mode::linearize);
+            CHECK(50.0 * loudestOf(modes, some, 0.98, 300.0).back() < 25.0 * (1.0 + 1e-9));
+        }
+        // Quiet enough that nothing is limited: then the louder one of both is the loudest.
+        some.predistortion.voltageLimit = 1e9;
+        const double quiet = 0.002 / std::max(1.0, trim);
+        for (const auto other : {Mode::speaker, Mode::audition}) {
+            const auto loudest = loudestOf({Mode::linearize, other, Mode::linearize, other}, some, quiet, 300.0);
+            CHECK(loudest[2] < 1.1 * std::max(loudest[0], loudest[1]));
+            CHECK(loudest[3] < 1.1 * std::max(loudest[0], loudest[1]));
+        }
+    }
+}
+
+TEST_CASE("The sound of a linearized loudspeaker is not cut at the limit of its voltage", "[chain]")
+{
+    // A high-pass makes the edges of a low tone's square nearly twice as high.
+    const auto model = linearPart(everything());
+    std::vector<double> square(48000);
+    for (std::size_t n = 0; n < square.size(); ++n)
+        for (int k = 1; k < 40; k += 2)
+            square[n] += 0.5 * std::sin(2.0 * std::numbers::pi * 25.0 * k * static_cast<double>(n) / 48000.0) / k;
+    const auto heard = [&](double limit) {
+        auto some = controls(Mode::audition);
+        some.fullScale = 1.0;
+        some.predistortion.voltageLimit = limit;
+        Chain chain(model, {48000.0, 2}, some);
+        return through(chain, square);
+    };
+    const auto free = heard(1e9);
+    REQUIRE(*std::max_element(free.begin(), free.end()) > 0.53);
+    CHECK(relativeError(heard(0.48), free) < 1e-9);  // the voltage itself stays below
+}
+
 TEST_CASE("A recipe is refused by field when it makes no sense", "[chain]")
 {
     auto document = nlohmann::json::parse(toJson(Recipe {}).dump());

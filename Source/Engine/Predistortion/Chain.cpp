@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -13,6 +14,15 @@ namespace {
 constexpr double fadeTime = 0.05;     // s, from mode to mode
 constexpr double levelTime = 0.005;   // s, see Glide
 constexpr double plainTime = 0.0003;  // s, see Glide: gone within the latency
+
+/// The factors before and after the engine, whose product is the trim.
+/// @param place  1: all of it before, 0: all of it after
+std::pair<double, double> split(double trim, double place)
+{
+    constexpr double silent = 1e-6;
+    const double before = place >= 1.0 ? trim : place <= 0.0 ? 1.0 : std::pow(std::max(trim, silent), place);
+    return {before, before > 0.0 ? trim / before : 1.0};
+}
 
 }  // namespace
 
@@ -27,8 +37,8 @@ Chain::Chain(std::unique_ptr<ChainEngine> engine, double sampleRate, const Chain
       wet_(static_cast<int>(fadeTime * sampleRate), engine_->latency()),
       played_(static_cast<int>(fadeTime * sampleRate), 0),
       fullScale_(levelTime, sampleRate),
-      before_(levelTime, sampleRate),
-      after_(levelTime, sampleRate),
+      trim_(levelTime, sampleRate),
+      place_(levelTime, sampleRate),
       plainGain_(plainTime, sampleRate, 1.0),
       plain_(static_cast<std::size_t>(engine_->latency()))
 {
@@ -39,10 +49,11 @@ Chain::Chain(std::unique_ptr<ChainEngine> engine, double sampleRate, const Chain
 void Chain::set(const ChainControls& controls)
 {
     const auto mode = controls.mode;
+    const bool atRest = !wet_.runs();
     const bool bends = mode == Mode::linearize || mode == Mode::audition,
                plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
-        if (!wet_.runs()) {  // what is switched in finds nothing of before but the coil's heat
+        if (atRest) {  // what is switched in finds nothing of before but the coil's heat
             const double left = heat();
             engine_->resetBending();
             engine_->warm(left);
@@ -66,13 +77,18 @@ void Chain::set(const ChainControls& controls)
     wet_.turn(mode != Mode::bypass);
     engine_->set(controls.predistortion);
     engine_->turn(bends);
+    strict_ = mode == Mode::linearize;
     limit_ = bends ? controls.predistortion.voltageLimit : std::numeric_limits<double>::infinity();
     if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0
         && std::isfinite(controls.trim)) {
         fullScale_.aim(controls.fullScale);
         if (mode != Mode::bypass) {
-            before_.aim(plays ? 1.0 : controls.trim);
-            after_.aim(plays ? controls.trim : 1.0);
+            trim_.aim(controls.trim);
+            place_.aim(plays ? 0.0 : 1.0);
+        }
+        if (mode != Mode::bypass && atRest) {
+            trim_.jump();
+            place_.jump();
         }
     }
 }
@@ -95,7 +111,7 @@ void Chain::reset()
     rest_ = 0.0;
     wet_.jump();
     played_.jump();
-    for (auto* level : {&fullScale_, &before_, &after_})
+    for (auto* level : {&fullScale_, &trim_, &place_})
         level->jump();
     plainGain_.jump(1.0);
     loudest_ = 0.0;
@@ -104,16 +120,14 @@ void Chain::reset()
     plainAt_ = 0;
 }
 
-/// The plain sample of the time of what comes out now.
-double Chain::delayed(double sample, double& scale)
+/// What went in at the time of what comes out now.
+Chain::Passing Chain::delayed(Passing passing)
 {
     if (plain_.empty())
-        return sample;
-    Passing passing {sample, scale};
+        return passing;
     std::swap(passing, plain_[plainAt_]);
     plainAt_ = plainAt_ + 1 == plain_.size() ? 0 : plainAt_ + 1;
-    scale = passing.fullScale;
-    return passing.sample;
+    return passing;
 }
 
 void Chain::process(const double* in, double* out, std::size_t n)
@@ -122,13 +136,13 @@ void Chain::process(const double* in, double* out, std::size_t n)
     while (n > 0) {
         const bool runs = wet_.runs();
         const std::size_t taken = std::min(n, engine_->room());
-        std::array<double, ChainEngine::longestPart> scale, clean;
+        std::array<Passing, ChainEngine::longestPart> passing;
         for (std::size_t k = 0; k < taken; ++k) {
-            const bool sound = std::isfinite(in[k]);
-            clean[k] = sound ? in[k] : 0.0;
-            scale[k] = fullScale_.step();
-            block_[k] = in[k] * scale[k] * before_.step();
+            const auto [before, after] = split(trim_.step(), place_.step());
+            passing[k] = {std::isfinite(in[k]) ? in[k] : 0.0, fullScale_.step(), after};
+            block_[k] = in[k] * passing[k].fullScale * before;
         }
+        const bool soundFades = played_.runs();
         if (runs)
             engine_->process(block_.data(), taken, played_);
         else
@@ -136,17 +150,21 @@ void Chain::process(const double* in, double* out, std::size_t n)
         for (std::size_t k = 0; k < taken; ++k) {
             if (!runs && !std::isfinite(in[k]))
                 faults_.fetch_add(1, std::memory_order_relaxed);
-            double unit = scale[k], plain = delayed(clean[k], unit);
-            const double weight = wet_.step(), trim = after_.step();
+            const auto then = delayed(passing[k]);
+            const double unit = then.fullScale, weight = wet_.step();
+            double plain = then.sample;
             if (weight < 1.0 && runs) {
                 // Fading to or from what is kept to a limit of the voltage.
-                loudest_ = std::max(loudest_, std::abs(clean[k] * scale[k]));
+                loudest_ = std::max(loudest_, std::abs(passing[k].sample * passing[k].fullScale));
                 plainGain_.aim(wet_.on() && loudest_ > limit_ ? limit_ / loudest_ : 1.0);
                 plain *= plainGain_.step();
                 if (wet_.on() && ++since_ > latency())
                     plain = std::clamp(plain, -limit_ / unit, limit_ / unit);
             }
-            const double made = runs ? trim * block_[k] / unit : plain;
+            double made = runs ? then.trimAfter * block_[k] / unit : plain;
+            // The engine keeps to the limit; what still comes behind it may not.
+            if (runs && strict_ && (then.trimAfter != 1.0 || soundFades))
+                made = std::clamp(made, -limit_ / unit, limit_ / unit);
             out[k] = withoutSubnormals(weight == 0.0 ? plain : plain + weight * (made - plain));
         }
         in += taken;

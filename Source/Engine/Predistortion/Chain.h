@@ -45,22 +45,24 @@ public:
     Meters collectMeters();              ///< from any one thread
 
 private:
-    double delayed(double sample, double& scale);
+    struct Passing {
+        double sample = 0.0, fullScale = 1.0;
+        double trimAfter = 1.0;  ///< the part of the trim that is still to come
+    };
+    Passing delayed(Passing);
     double heat() const;
 
     std::unique_ptr<ChainEngine> engine_;
     double rate_;        ///< Hz
     double rest_ = 0.0;  ///< samples for which the engine has not run
     Fade wet_, played_;  ///< weight of the processed signal; within it, weight of the loudspeaker
-    /// before_, after_: the two places of the trim; plainGain_: keeps the unprocessed signal within the limit while it
-    /// fades
-    Glide fullScale_, before_, after_, plainGain_;
+    /// place_: of the trim, 1 before the engine and 0 after it; plainGain_: keeps the unprocessed signal within the
+    /// limit while it fades
+    Glide fullScale_, trim_, place_, plainGain_;
     double limit_ = 0.0, loudest_ = 0.0;  ///< V; loudest_: of the unprocessed signal since something was switched in
     int since_ = 0;                       ///< samples since then
-    struct Passing {
-        double sample = 0.0, fullScale = 1.0;
-    };
-    std::vector<Passing> plain_;  ///< a ring, as long as the latency
+    bool strict_ = false;                 ///< nothing that comes out may pass the limit
+    std::vector<Passing> plain_;          ///< a ring, as long as the latency
     std::size_t plainAt_ = 0;
     std::array<double, ChainEngine::longestPart> block_ {};
     std::atomic<int> faults_ {0};

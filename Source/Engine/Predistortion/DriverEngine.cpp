@@ -54,7 +54,7 @@ void DriverEngine::process(double* volts, std::size_t n, Fade& played)
     bend_.begin(volts, n);
     if (played.runs())
         play(n, played);
-    bend_.finish(volts, n);
+    bend_.finish(volts, n, !played.on());
 }
 
 void DriverEngine::publish()

@@ -58,7 +58,7 @@ void Predistorter::reset()
     near_.jump(0.0);
     effort_.jump(1.0);
     outcome_ = {};
-    heats_ = last_ = left_ = 0.0;
+    heats_ = last_ = left_ = betweenPeak_ = 0.0;
 }
 
 void Predistorter::set(const PredistortionControls& controls)
@@ -139,18 +139,24 @@ void Predistorter::begin(const double* in, std::size_t n)
             for (std::size_t s = 0; s < factor; ++s)
                 bend(between_[k * factor + s], on_ ? effort * (amount + (1.0 - amount) * near) : amount);
     }
+    betweenPeak_ = 0.0;
+    for (std::size_t k = 0; k < n * factor; ++k)
+        betweenPeak_ = std::max(betweenPeak_, std::abs(between_[k]));
 }
 
-void Predistorter::finish(double* out, std::size_t n)
+void Predistorter::finish(double* out, std::size_t n, bool voltage)
 {
     const FlushSubnormals flush;
     oversampling_.down(between_.data(), n, out);
     // The filter on the way down may overshoot.
-    const double limit = on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity();
+    const double limit = on_ && voltage ? protection_.voltageLimit() : std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < n; ++k) {
         out[k] = withoutSubnormals(std::clamp(out[k], -limit, limit));
-        peak_.voltage = std::max(peak_.voltage, std::abs(out[k]));
+        if (voltage)
+            peak_.voltage = std::max(peak_.voltage, std::abs(out[k]));
     }
+    if (!voltage)
+        peak_.voltage = std::max(peak_.voltage, betweenPeak_);
 }
 
 void Predistorter::process(const double* in, double* out, std::size_t n)

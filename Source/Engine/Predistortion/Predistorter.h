@@ -59,7 +59,8 @@ public:
     /// @param n  at most room()
     void begin(const double* in, std::size_t n);
     double* between() { return between_.data(); }  ///< n times the oversampling factor
-    void finish(double* out, std::size_t n);
+    /// @param voltage  what is between is the voltage, which the limit holds for; else what became of it, such as sound
+    void finish(double* out, std::size_t n, bool voltage = true);
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
     void publish();                                          ///< makes the latest output visible to collectMeters()
 
@@ -69,7 +70,7 @@ public:
     /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double displacement = 0.0;  ///< peak of a cone driven by the output, m
-        double voltage = 0.0;       ///< peak of the output, V
+        double voltage = 0.0;       ///< peak of the output, or of the voltage that is between, V
         double power = 0.0;         ///< W, largest running mean of the coil's heat
         /// largest dB by which each limit turned down: the requested motion, the voltage, the current; 0: not at all
         double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;
@@ -97,6 +98,7 @@ private:
     double heats_ = 0.0;  ///< sum over the tick, samples of the higher rate times W
     /// V: last_: the latest sample of the higher rate; left_: the remainder of the step that a fault makes
     double last_ = 0.0, left_ = 0.0, decay_;
+    double betweenPeak_ = 0.0;  ///< V, of the last block
     std::array<double, longestPart> block_ {};
     std::array<double, 4 * longestPart> between_ {};
     Meters peak_;
