@@ -3,6 +3,7 @@
 
 #include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/BlackBox/ModelDocument.h"
+#include "Engine/Predistortion/RealTime.h"
 
 #include <cmath>
 
@@ -25,6 +26,13 @@ bool givesExcursion(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     return box == nullptr || std::isfinite(measuredDisplacement((*box)->played));
+}
+
+bool limitsExcursion(const AnyModel& model)
+{
+    const auto* box = std::get_if<LoadedBoxPointer>(&model);
+    return box != nullptr ? (*box)->played.rehearsal && givesExcursion(model)
+                          : std::isfinite(measuredDisplacement(std::get<Model>(model)));
 }
 
 bool holdsBox(std::string_view text)

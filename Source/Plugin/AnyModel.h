@@ -31,6 +31,8 @@ using AnyModel = std::variant<Model, LoadedBoxPointer>;
 bool hasCoil(const AnyModel&);
 /// Whether it tells how far the cone moves, as a driver always does.
 bool givesExcursion(const AnyModel&);
+/// Whether it tells how far the cone may move: as far as its laws over x, or its states, were measured.
+bool limitsExcursion(const AnyModel&);
 
 /// Whether the text is the document of a model without physics.
 bool holdsBox(std::string_view text);

@@ -18,9 +18,10 @@ bool holdsModel(const juce::File& file)
     if (!file.hasFileExtension("json") || file.getSize() > (1 << 26))
         return false;
     const auto document = nlohmann::json::parse(file.loadFileAsString().toStdString(), nullptr, false);
-    return !document.is_object()
-           || (document.value("format", "") != "excursion-measurement"
-               && document.value("format", "") != "excursion-plan");
+    if (!document.is_object() || !document.contains("format"))
+        return true;
+    const auto& format = document["format"];
+    return format != "excursion-measurement" && format != "excursion-plan";
 }
 
 }  // namespace
@@ -87,12 +88,14 @@ void Editor::noteModel(const AnyModel& before, const AnyModel& now)
         return [this, which] {
             try {
                 owner_.setModel(which);
+                owner_.tellHostOfState();
             } catch (const Error& error) {
                 tell(words(error.what()), true);
             }
         };
     };
     history_.did("Load a model", put(before), put(now));
+    owner_.tellHostOfState();
 }
 
 void Editor::use(const Model& model, const juce::String& from)
@@ -163,6 +166,13 @@ void Editor::load(const juce::File& file)
     go(PageName::linearize);
 }
 
-void Editor::filesDropped(const juce::StringArray& files, int, int) { load(juce::File(files[0])); }
+void Editor::filesDropped(const juce::StringArray& files, int, int)
+{
+    try {
+        load(juce::File(files[0]));
+    } catch (const std::exception& error) {  // no host expects one here
+        tell(words(error.what()), true);
+    }
+}
 
 }  // namespace excursion::plugin

@@ -61,8 +61,8 @@ juce::String LimitMeters::motionInWords(double displacement, double range) const
     juce::StringArray parts;
     if (!motionIsGuessed_)
         parts.add(juce::String(1e3 * displacement, 2) + " mm");
-    if (std::isfinite(range))
-        parts.add(whole(100.0 * displacement / range) + " % of what was measured");
+    parts.add(std::isfinite(range) ? whole(100.0 * displacement / range) + " % of what was measured"
+                                   : juce::String("not limited: the model tells no range"));
     return parts.joinIntoString(", ");
 }
 

@@ -35,6 +35,7 @@ LinearizePage::LinearizePage(Window& window)
     drivers_.onChange = [this] {
         if (const int k = drivers_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryDrivers()[static_cast<std::size_t>(k)];
+            drivers_.setSelectedId(0, juce::dontSendNotification);  // the same one may be wanted again
             window_.use(modelFromText(factory.text, factory.title), "the factory");
         }
     };
@@ -45,6 +46,7 @@ LinearizePage::LinearizePage(Window& window)
         if (const int k = recipes_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
             const auto recipe = recipeFromText(factory.text, factory.title);
+            recipes_.setSelectedId(0, juce::dontSendNotification);  // as above
             const auto put = [this](const Recipe& which, const Between& between) {
                 processor_.parameters().set(which, between);
                 follow();
@@ -99,10 +101,11 @@ void LinearizePage::showModel(const AnyModel& model)
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
         const auto& id = numbers[k]->paramID;
-        const bool shown = id == "displacementLimit" || id == "margin" ? moves
-                           : id == "powerLimit"                        ? coil
-                           : id == "coilResistance"                    ? box_ && coil
-                                                                       : true;
+        const bool shown = id == "displacementLimit" ? limitsExcursion(model)
+                           : id == "margin"          ? moves
+                           : id == "powerLimit"      ? coil
+                           : id == "coilResistance"  ? box_ && coil
+                                                     : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
     }
@@ -276,9 +279,12 @@ void LinearizePage::follow()
         dial.second->follow();
     for (auto& one : switches_)
         one->follow();
-    if (const auto title = words(processor_.parameters().recipe().title);
-        title.isNotEmpty() && title != recipes_.getText())
-        recipes_.setText(title, juce::dontSendNotification);
+    const auto title = words(processor_.parameters().recipe().title);
+    if (const auto shown = title.isEmpty() ? juce::String("Recipes") : title;
+        shown != recipes_.getTextWhenNothingSelected()) {
+        recipes_.setTextWhenNothingSelected(shown);
+        recipes_.repaint();
+    }
 }
 
 void LinearizePage::tick()

@@ -6,8 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace excursion::plugin {
+
+ChainControls chainControls(const Settings& settings, double measuredDisplacement)
+{
+    return {settings.mode, settings.fullScale, std::pow(10.0, 0.05 * settings.trimDb),
+            controlsOf(settings, measuredDisplacement)};
+}
 
 Parameters::Parameters(juce::AudioProcessor& processor)
 {
@@ -80,10 +87,17 @@ Settings Parameters::settings() const
     return settings;
 }
 
+void Parameters::read(Settings& into) const
+{
+    const auto before = beginsAndEnds_.load();
+    auto now = settings();
+    if (before % 2 == 0 && beginsAndEnds_.load() == before)
+        into = std::move(now);
+}
+
 ChainControls Parameters::controls(double measuredDisplacement) const
 {
-    const auto now = settings();
-    return {now.mode, now.fullScale, std::pow(10.0, 0.05 * now.trimDb), controlsOf(now, measuredDisplacement)};
+    return chainControls(settings(), measuredDisplacement);
 }
 
 std::uint64_t Parameters::switches() const
@@ -120,6 +134,38 @@ Between Parameters::between() const
     return found;
 }
 
+namespace {
+
+/// While it lives a recipe is being set.
+class Setting {
+public:
+    explicit Setting(std::atomic<unsigned>& beginsAndEnds) : beginsAndEnds_(beginsAndEnds)
+    {
+        beginsAndEnds_.fetch_add(1);
+    }
+    Setting(const Setting&) = delete;
+    Setting& operator=(const Setting&) = delete;
+    ~Setting() { beginsAndEnds_.fetch_add(1); }
+
+private:
+    std::atomic<unsigned>& beginsAndEnds_;
+};
+
+}  // namespace
+
+void Parameters::storeCurve(const ThirdOctaves& curve)
+{
+    for (std::size_t k = 0; k < curve_.size(); ++k)
+        curve_[k].store(curve[k], std::memory_order_relaxed);
+}
+
+void Parameters::setCurve(const ThirdOctaves& curve)
+{
+    const std::lock_guard alone(setting_);
+    const Setting setting(beginsAndEnds_);
+    storeCurve(curve);
+}
+
 void Parameters::set(const Recipe& recipe, const Between& between)
 {
     // The recipe has the word: a number that stands for anything else is none.
@@ -133,6 +179,8 @@ void Parameters::set(const Recipe& recipe, const Between& between)
         title_ = recipe.title;
         words_ = recipe.words;
     }
+    const std::lock_guard alone(setting_);
+    const Setting setting(beginsAndEnds_);
     put(*mode_, mode_->proportionOf(static_cast<int>(recipe.mode)));
     fullScale_->set(recipe.fullScale);
     amount_->set(recipe.amount);
@@ -148,8 +196,7 @@ void Parameters::set(const Recipe& recipe, const Between& between)
     targetVolume_->set(recipe.target.volume);
     targetLow_->set(recipe.target.low);
     targetHigh_->set(recipe.target.high);
-    for (std::size_t k = 0; k < curve_.size(); ++k)
-        curve_[k].store(recipe.target.curve[k], std::memory_order_relaxed);
+    storeCurve(recipe.target.curve);
     for (std::size_t k = 0; k < effects_.size(); ++k)
         put(*effects_[k],
             std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);

@@ -14,6 +14,9 @@
 
 namespace excursion::plugin {
 
+/// @param measuredDisplacement  m, of which the limit of the excursion is a share; infinite: no limit
+ChainControls chainControls(const Settings&, double measuredDisplacement);
+
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
 ///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V),
 ///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects, target, targetF0 (Hz),
@@ -28,6 +31,7 @@ public:
     Recipe recipe() const;  ///< title and words are of the one that was set last; not for the audio thread
     /// A valid one; tells the host; not for the audio thread.
     void set(const Recipe&, const Between& = {});
+    void setCurve(const ThirdOctaves&);  ///< of a target, and nothing else; not for the audio thread
 
     /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see
     /// Stepped.
@@ -35,6 +39,8 @@ public:
 
     /// For the audio thread as well.
     Settings settings() const;
+    /// The same, unless a recipe is being set, of which it would see a part: then they stay as they are. Wait-free.
+    void read(Settings&) const;
     ChainControls controls(double measuredDisplacement) const;
     std::uint64_t switches() const;  ///< a bit for every effect that is on
 
@@ -48,12 +54,16 @@ public:
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
+    void storeCurve(const ThirdOctaves&);
+
     Choice *mode_, *target_;
     Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_, *coilResistance_;
     Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};
-    mutable std::mutex mutex_;  ///< of what follows; never locked on the audio thread
+    std::mutex setting_;                       ///< one recipe at a time
+    std::atomic<unsigned> beginsAndEnds_ {0};  ///< of recipes that were set; odd while one is
+    mutable std::mutex mutex_;                 ///< of what follows; never locked on the audio thread
     std::string title_, words_;
 };
 

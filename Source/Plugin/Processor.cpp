@@ -5,7 +5,7 @@
 #include "Engine/Error.h"
 
 #include <chrono>
-#include <limits>
+#include <utility>
 
 namespace excursion::plugin {
 namespace {
@@ -38,7 +38,6 @@ Processor::Processor()
                          .withOutput("Output", juce::AudioChannelSet::stereo(), true)),
       parameters_(*this),
       model_(firstModel()),
-      measuredDisplacement_(measuredDisplacement(model_)),
       worker_([this](const std::stop_token& stop) { work(stop); }),
       rehearsing_([this](const LoadedBoxPointer& box, const std::stop_token& stop) { put(box, stop); })
 {
@@ -64,43 +63,84 @@ RealTimeOptions Processor::options() const
 }
 
 /// With the mutex held: one chain a channel, with the switches as they are.
-std::vector<std::unique_ptr<Chain>> Processor::chains(const AnyModel& model, std::size_t channels)
+Processor::Chains Processor::chains(const AnyModel& model, std::size_t channels)
 {
     switches_ = parameters_.switches();
-    std::vector<std::unique_ptr<Chain>> result;
-    double measured = std::numeric_limits<double>::infinity();
+    Chains result;
     if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
         const double rate = options().sampleRate;
-        measured = measuredDisplacement((*box)->played);
+        const double measured = measuredDisplacement((*box)->played);
         const auto controls = parameters_.controls(measured);
         for (std::size_t k = 0; k < channels; ++k)
-            result.push_back(std::make_unique<Chain>(
-                std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.predistortion), rate, controls));
+            result.push_back(std::make_unique<ModelChain>(
+                measured, std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.predistortion), rate,
+                controls));
     } else {
         const auto& loaded = std::get<Model>(model);
         const auto running = asSwitched(loaded, parameters_.recipe(), options());
-        measured = measuredDisplacement(loaded);  // an effect that is switched off takes no limit with it
+        // An effect that is switched off takes no limit with it.
+        const double measured = measuredDisplacement(loaded);
         for (std::size_t k = 0; k < channels; ++k)
-            result.push_back(std::make_unique<Chain>(running, options(), parameters_.controls(measured)));
+            result.push_back(
+                std::make_unique<ModelChain>(measured, running, options(), parameters_.controls(measured)));
     }
-    measuredDisplacement_.store(measured, std::memory_order_relaxed);
     return result;
 }
 
-/// With the mutex held: offers new chains for the model.
+/// With the mutex held: new chains for the model, which play at once where nothing has been heard yet, and else are
+/// offered.
 /// @returns their latency
 int Processor::build(const AnyModel& model)
 {
     auto fresh = chains(model, std::max<std::size_t>(channels_.size(), 1));
     const int latency = fresh.front()->latency();
-    for (std::size_t k = 0; k < channels_.size(); ++k) {
+    for (auto& chain : fresh) {
         // Warm: its memory has been touched before the audio thread gets it.
         std::array<double, 256> silence {};
-        fresh[k]->process(silence.data(), silence.data(), silence.size());
-        fresh[k]->reset();
-        channels_[k]->offer(std::move(fresh[k]), latency);
+        chain->process(silence.data(), silence.data(), silence.size());
+        chain->reset();
     }
+    {
+        const juce::ScopedLock still(getCallbackLock());
+        if (!heard_.load()) {
+            if (!channels_.empty())
+                playAlone(std::move(fresh));
+            return latency;
+        }
+    }
+    // All of them at last: no channel is to wait for another.
+    for (std::size_t k = 0; k < channels_.size(); ++k)
+        channels_[k]->offer(std::move(fresh[k]), latency);
     return latency;
+}
+
+/// With the mutex held, while no audio runs: chains that play from the first sample on. A coil stays as warm as it is.
+void Processor::playAlone(Chains fresh)
+{
+    const auto before = std::exchange(channels_, {});
+    for (std::size_t k = 0; k < fresh.size(); ++k) {
+        if (k < before.size() && before[k]->current() != nullptr)
+            fresh[k]->takeOver(*before[k]->current());
+        channels_.push_back(std::make_unique<Crossfade<ModelChain>>(static_cast<int>(fadeTime * sampleRate_),
+                                                                    static_cast<int>(warmTime * sampleRate_)));
+        channels_.back()->start(std::move(fresh[k]));
+    }
+    heard_.store(false);
+}
+
+/// With the mutex held: new chains where effects have been switched.
+void Processor::followSwitches()
+{
+    if (channels_.empty() || parameters_.switches() == switches_)
+        return;
+    try {
+        if (box_)
+            switches_ = parameters_.switches();  // it has no effects
+        else
+            build(model_);
+    } catch (const Error&) {
+        // Without some effect the model cannot be run: what plays goes on.
+    }
 }
 
 void Processor::work(const std::stop_token& stop)
@@ -109,16 +149,7 @@ void Processor::work(const std::stop_token& stop)
     while (!stop.stop_requested()) {
         for (const auto& channel : channels_)
             channel->collect();
-        if (!channels_.empty() && parameters_.switches() != switches_) {
-            try {
-                if (box_)
-                    switches_ = parameters_.switches();  // it has no effects
-                else
-                    build(model_);
-            } catch (const Error&) {
-                // Without some effect the model cannot be run: what plays goes on.
-            }
-        }
+        followSwitches();
         wake_.wait_for(lock, stop, patience, [] { return false; });
     }
 }
@@ -215,20 +246,17 @@ void Processor::prepareToPlay(double sampleRate, int)
 /// @returns the latency
 int Processor::start()
 {
-    channels_.clear();
     delays_.clear();
     standstill_.clear();
+    heard_.store(false);
     const auto count = static_cast<std::size_t>(getMainBusNumOutputChannels());
     try {
         if (std::string reason; !RealTimeOptions {sampleRate_, oversampling}.isValid(&reason))
             throw Error(Error::Kind::usage, reason + ".");
         auto first = chains(box_ ? AnyModel(box_) : AnyModel(model_), std::max<std::size_t>(count, 1));
         const int latency = first.front()->latency();
-        for (std::size_t k = 0; k < count; ++k) {
-            channels_.push_back(std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate_),
-                                                                   static_cast<int>(warmTime * sampleRate_)));
-            channels_.back()->start(std::move(first[k]));
-        }
+        first.resize(count);
+        playAlone(std::move(first));
         return latency;
     } catch (const std::exception& error) {
         // No host expects an exception here.
@@ -242,7 +270,8 @@ int Processor::start()
 void Processor::reset()
 {
     for (const auto& channel : channels_)
-        channel->each([](Chain& chain) { chain.reset(); });
+        channel->jump();
+    heard_.store(false);  // the first block begins with what is wanted then
     for (auto& delay : delays_)
         delay.reset();
 }
@@ -257,17 +286,33 @@ bool Processor::isBusesLayoutSupported(const BusesLayout& layout) const
 template <class Sample>
 void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
 {
-    auto controls = parameters_.controls(measuredDisplacement_.load(std::memory_order_relaxed));
-    if (bypassed) {
-        controls.mode = Mode::bypass;
-        controls.trim = 1.0;
+    const bool offline = isNonRealtime();
+    if (offline) {  // what is rendered does not depend on when another thread finds time
+        const std::lock_guard lock(mutex_);
+        followSwitches();
     }
+    const bool begins = !heard_.exchange(true);
+    if (begins)
+        settings_ = parameters_.settings();
+    else
+        parameters_.read(settings_);
     int faults = 0;
     const std::size_t channels = std::max(channels_.size(), delays_.size());
     for (std::size_t c = 0; c < channels && static_cast<int>(c) < buffer.getNumChannels(); ++c) {
         auto* const channel = channels_.empty() ? nullptr : channels_[c].get();
         if (channel != nullptr)
-            channel->each([&controls](Chain& chain) { chain.set(controls); });
+            channel->each([&](ModelChain& chain) {
+                auto controls = chainControls(settings_, chain.measuredDisplacement);
+                if (bypassed) {
+                    controls.mode = Mode::bypass;
+                    controls.trim = 1.0;
+                }
+                chain.set(controls);
+                if (begins && offline)
+                    chain.reset();
+                else if (begins)
+                    chain.settle();
+            });
         Sample* const samples = buffer.getWritePointer(static_cast<int>(c));
         const auto length = static_cast<std::size_t>(buffer.getNumSamples());
         for (std::size_t n = 0; n < length; n += block_.size()) {

@@ -44,6 +44,8 @@ public:
 
     /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
     void setModel(const AnyModel&);
+    /// On the message thread, where a person has changed what no parameter shows: a host asks whether to save it.
+    void tellHostOfState() { updateHostDisplay(ChangeDetails {}.withNonParameterStateChanged(true)); }
     AnyModel anyModel() const;
     Model model() const;           ///< the driver that was loaded last, while a model without physics plays as well
     LoadedBoxPointer box() const;  ///< the model without physics that plays; null while a driver does
@@ -92,12 +94,24 @@ public:
     void setStateInformation(const void*, int) override;
 
 private:
+    struct ModelChain : Chain {
+        template <class... Arguments>
+        explicit ModelChain(double measured, Arguments&&... arguments)
+            : Chain(std::forward<Arguments>(arguments)...), measuredDisplacement(measured)
+        {
+        }
+        double measuredDisplacement;  ///< m, of which the limit of the excursion is a share
+    };
+    using Chains = std::vector<std::unique_ptr<ModelChain>>;
+
     template <class Sample>
     void play(juce::AudioBuffer<Sample>&, bool bypassed);
     void put(const AnyModel&, const std::stop_token& = {});
     void requirePlayable(const AnyModel&, const Recipe&) const;
     int build(const AnyModel&);
-    std::vector<std::unique_ptr<Chain>> chains(const AnyModel&, std::size_t channels);
+    Chains chains(const AnyModel&, std::size_t channels);
+    void playAlone(Chains);
+    void followSwitches();
     int start();
     void tellLatency();
     void handleAsyncUpdate() override;
@@ -111,12 +125,14 @@ private:
     std::atomic<std::uint64_t> modelVersion_ {1};
     double sampleRate_ = 0.0;       ///< 0: not prepared
     std::atomic<int> latency_ {0};  ///< samples; what the host has been told, or is about to be
-    std::atomic<double> measuredDisplacement_ {0.0};
-    std::uint64_t switches_ = 0;  ///< of the effects, as they were when chains were built
+    std::uint64_t switches_ = 0;    ///< of the effects, as they were when chains were built
     std::string standstill_;
-    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;  ///< these two are changed only while no audio runs
+    std::vector<std::unique_ptr<Crossfade<ModelChain>>> channels_;  ///< these two are changed only while no audio runs
     /// in place of the channels, where no chain can run
     std::vector<Delay> delays_;
+    /// Something was played since the chains began or were reset; before that they may be put in place of each other.
+    std::atomic<bool> heard_ {false};
+    Settings settings_;  ///< as the audio thread has read them last
     std::array<double, 256> block_ {};
     Peak displacement_, region_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};

@@ -91,13 +91,14 @@ void TargetPanel::use(const juce::File& file)
 {
     try {
         const auto read = readLevelCurve(file.getFullPathName().toStdString());
-        auto recipe = processor_.parameters().recipe();
-        const auto before = recipe;
-        recipe.target.curve = targetCurve(read.frequency, read.db);
-        const auto put = [this](const Recipe& which) { processor_.parameters().set(which); };
+        const auto before = processor_.parameters().settings().target.curve, now = targetCurve(read.frequency, read.db);
+        const auto put = [this](const ThirdOctaves& curve) {
+            processor_.parameters().setCurve(curve);
+            processor_.tellHostOfState();
+        };
         history_.did(
-            "Target curve", [put, before] { put(before); }, [put, recipe] { put(recipe); });
-        put(recipe);
+            "Target curve", [put, before] { put(before); }, [put, now] { put(now); });
+        put(now);
         if (told)
             told("The target follows " + file.getFileName() + ".", false);
     } catch (const Error& error) {

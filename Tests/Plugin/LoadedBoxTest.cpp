@@ -156,8 +156,10 @@ TEST_CASE("A rehearsal that is cancelled while its model is handed over replaces
     for (int k = 0; k < 3; ++k) {
         Processor processor;
         std::jthread busy([&](const std::stop_token& stop) {
-            while (!stop.stop_requested())
+            while (!stop.stop_requested()) {
                 processor.prepareToPlay(rate, 512);
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));  // a mutex is not fair: others never had it
+            }
         });
         processor.rehearsing().load(boxes().front()->document, "a file");
         while (processor.rehearsing().status().busy && processor.rehearsing().status().fraction < 1.0) {}
@@ -270,6 +272,15 @@ TEST_CASE("A model that cannot be inverted plays, and lets the signal through wh
     setMode(processor, Mode::linearize);
     processor.prepareToPlay(rate, 512);
     CHECK(errorDb(vectorOf(through(processor, volts)), vectorOf(volts)) < -250.0);
+    auto recipe = processor.parameters().recipe();
+    const double most = vectorOf(volts).cwiseAbs().maxCoeff();
+    recipe.voltageLimit = 0.5 * most;
+    processor.parameters().set(recipe);
+    CHECK(vectorOf(through(processor, volts)).cwiseAbs().maxCoeff() == Approx(0.5 * most));
+    CHECK(protectionOf(processor.box()->played, 8.0).find("nothing else is limited") != std::string::npos);
+    CHECK_FALSE(plugin::limitsExcursion(processor.anyModel()));
+    recipe.voltageLimit = 100.0;
+    processor.parameters().set(recipe);
     setMode(processor, Mode::speaker);
     processor.reset();
     const auto out = vectorOf(through(processor, volts));

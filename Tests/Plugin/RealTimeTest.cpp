@@ -55,6 +55,7 @@ TEST_CASE("Nothing in processBlock allocates, locks or calls the system", "[plug
         INFO(rate << " Hz, " << name(mode));
         processor.prepareToPlay(rate, 64);
         processor.parameters().mode() = static_cast<int>(mode);
+        processor.processBlock(buffers[0], midi);
         processor.setModel(processor.model());  // a hand-over is under way
         const auto counts = countIn(work);
         CHECK(counts.allocations == 0);
@@ -90,6 +91,7 @@ TEST_CASE("Nothing in processBlock allocates, locks or calls the system with mod
                 processor.setModel(processor.model());
                 processor.prepareToPlay(rate, 64);
                 processor.parameters().mode() = static_cast<int>(mode);
+                processor.processBlock(buffers[0], midi);
                 processor.setModel(box);  // a hand-over is under way
                 for (int round = 0; round < 2; ++round) {
                     const auto counts = countIn(work);

@@ -43,12 +43,14 @@ void BlackBoxEngine::warm(double heat)
 
 void BlackBoxEngine::set(const PredistortionControls& controls)
 {
+    voltageLimit_ = controls.voltageLimit;
     if (bend_)
         bend_->set(controls);
 }
 
 void BlackBoxEngine::turn(bool bends)
 {
+    on_ = bends;
     if (bend_)
         bend_->turn(bends);
 }
@@ -62,6 +64,8 @@ void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
             if (!std::isfinite(volts[k])) {
                 volts[k] = 0.0;
                 faults_.fetch_add(1, std::memory_order_relaxed);
+            } else if (on_) {
+                volts[k] = std::clamp(volts[k], -voltageLimit_, voltageLimit_);
             }
     const bool plays = played.runs();
     if (plays)

@@ -14,7 +14,8 @@
 namespace excursion {
 
 /// A model without physics in a chain: the BlackBoxPredistorter, if the model can be inverted, followed by the
-/// BlackBoxSpeaker. The model's output is scaled to the level that the signal has under the stimulus of the fit (see
+/// BlackBoxSpeaker. Where it cannot be inverted the signal passes, and what is beyond the limit of the voltage is cut.
+/// The model's output is scaled to the level that the signal has under the stimulus of the fit (see
 /// PlayedBox::perOutput). Besides the limits (see BlackBoxPredistorter) the signal stays in the region of the fit. The
 /// meters show this as reduction of the motion.
 class BlackBoxEngine : public ChainEngine {
@@ -40,6 +41,8 @@ private:
     std::optional<BlackBoxPredistorter> bend_;
     BlackBoxSpeaker speaker_;
     double perOutput_;
+    double voltageLimit_ = 0.0;  ///< V; for a model that cannot be inverted, while it is turned on
+    bool on_ = false;
     bool moves_;                   ///< the output is the excursion
     std::vector<double> waiting_;  ///< a ring: delays the unplayed signal by the speaker's latency
     std::size_t at_ = 0;

@@ -54,6 +54,8 @@ double measuredDisplacement(const PlayedBox& played)
 
 std::string protectionOf(const PlayedBox& played, double coilResistance)
 {
+    if (!played.rehearsal)
+        return "Nothing is linearized. Peaks above the limit of the voltage are cut; nothing else is limited.";
     const bool moves = tellsExcursion(played.box), coil = drivesCoil(played.box);
     const std::string power = coil && coilResistance > 0.0 ? " and power" : "";
     std::string text = moves ? "Excursion, voltage" + power : "Voltage" + power;

@@ -120,6 +120,13 @@ void Chain::reset()
     plainAt_ = 0;
 }
 
+void Chain::settle()
+{
+    const double left = heat();
+    reset();
+    engine_->warm(left);
+}
+
 /// What went in at the time of what comes out now.
 Chain::Passing Chain::delayed(Passing passing)
 {

@@ -36,6 +36,7 @@ public:
 
     int latency() const { return engine_->latency(); }  ///< samples; fixed
     void reset();
+    void settle();  ///< as reset(), with the controls as they are now and the coil as warm as it is
     void set(const ChainControls&);
     /// The coil is as warm as another chain left it that played until now.
     void takeOver(const Chain& before);

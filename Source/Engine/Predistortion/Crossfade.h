@@ -43,6 +43,15 @@ public:
         left_ = 0;
     }
 
+    /// On the audio thread, while nothing is heard: the engine that was offered last plays alone from here on.
+    void jump()
+    {
+        accept();
+        if (old_)
+            handover_.retire(std::exchange(old_, nullptr));
+        left_ = unheard_ = 0;
+    }
+
     Engine* current() { return now_ ? now_->engine.get() : nullptr; }  ///< on the audio thread
 
     /// On the audio thread: calls work(engine) for every running engine, so that all get new controls.
@@ -59,18 +68,7 @@ public:
     {
         while (n > 0) {
             if (left_ == 0 && !old_)
-                if (auto* parcel = handover_.accept()) {
-                    old_ = now_;
-                    now_ = parcel;
-                    if constexpr (requires(Engine & next, const Engine& before) { next.takeOver(before); })
-                        if (old_)
-                            now_->engine->takeOver(*old_->engine);
-                    unheard_ = warm_ + std::max(parcel->warm, 0);
-                    left_ = unheard_ + length_;
-                    fade_.turn(false);
-                    fade_.jump();
-                    fade_.turn(true);
-                }
+                accept();
             const std::size_t count = left_ > 0 ? std::min({n, before_.size(), static_cast<std::size_t>(left_)}) : n;
             if (left_ > 0) {
                 if (old_)
@@ -97,6 +95,26 @@ public:
     }
 
 private:
+    /// An engine that was offered comes in beside the one that plays.
+    void accept()
+    {
+        auto* parcel = handover_.accept();
+        if (!parcel)
+            return;
+        if (old_)
+            handover_.retire(old_);
+        old_ = now_;
+        now_ = parcel;
+        if constexpr (requires(Engine & next, const Engine& before) { next.takeOver(before); })
+            if (old_)
+                now_->engine->takeOver(*old_->engine);
+        unheard_ = warm_ + std::max(parcel->warm, 0);
+        left_ = unheard_ + length_;
+        fade_.turn(false);
+        fade_.jump();
+        fade_.turn(true);
+    }
+
     Handover<Engine> handover_;
     typename Handover<Engine>::Parcel *old_ = nullptr, *now_ = nullptr;
     Fade fade_;

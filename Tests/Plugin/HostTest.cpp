@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What hosts do besides playing: states that come late, resets, renders, and listeners that ask at once.
+#include "Played.h"
+
+#include "Plugin/Editor.h"
+
+#include <catch2/catch.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+using namespace excursion;
+using excursion::test::playedInBlocks;
+using excursion::test::stateOf;
+using plugin::Editor;
+using plugin::Processor;
+
+namespace {
+
+constexpr double rate = 48000.0;
+
+std::vector<float> tone(double frequency, double seconds, double amplitude)
+{
+    std::vector<float> u(static_cast<std::size_t>(rate * seconds));
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = static_cast<float>(
+            amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate));
+    return u;
+}
+
+std::vector<float> heard(Processor& processor, const std::vector<float>& u,
+                         const std::function<void(std::size_t)>& after = [](std::size_t) {})
+{
+    return playedInBlocks(
+        u, [&](auto& buffer, auto& midi) { processor.processBlock(buffer, midi); }, after);
+}
+
+void wants(Processor& processor, Mode mode, double voltageLimit = 1000.0)
+{
+    auto recipe = processor.parameters().recipe();
+    recipe.mode = mode;
+    recipe.voltageLimit = voltageLimit;
+    processor.parameters().set(recipe);
+}
+
+float loudest(const std::vector<float>& u)
+{
+    float most = 0.0f;
+    for (const float value : u)
+        most = std::max(most, std::abs(value));
+    return most;
+}
+
+/// Counts what a host is told.
+struct Listener : juce::AudioProcessorListener {
+    std::function<void(int)> moved;
+    int states = 0;
+
+    void audioProcessorParameterChanged(juce::AudioProcessor*, int index, float) override
+    {
+        if (moved)
+            moved(index);
+    }
+    void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails& details) override
+    {
+        states += details.nonParameterStateChanged ? 1 : 0;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("A state counts from the first sample on, whether it comes before or after the rate", "[plugin]")
+{
+    Processor saved;
+    saved.setModel(plugin::modelFromText(plugin::factoryDrivers().front().text, "a driver"));
+    wants(saved, Mode::speaker);
+    const auto state = stateOf(saved);
+    const auto restore = [&](Processor& processor) {
+        processor.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+    };
+    const auto u = tone(60.0, 0.3, 0.5);
+    Processor early, late;
+    restore(early);
+    early.prepareToPlay(rate, 480);
+    late.prepareToPlay(rate, 480);
+    restore(late);
+    CHECK(late.getLatencySamples() == early.getLatencySamples());
+    const auto expected = heard(early, u);
+    CHECK(heard(late, u) == expected);
+    CHECK(loudest(expected) > 0.1f);
+    // After a reset as well, whatever was going on: here a mode and a model that are being faded to.
+    Processor reset;
+    reset.prepareToPlay(rate, 480);
+    heard(reset, u);
+    restore(reset);
+    heard(reset, tone(200.0, 0.01, 0.9));
+    reset.setNonRealtime(true);  // else the coil is as warm as it was
+    reset.reset();
+    CHECK(heard(reset, u) == expected);
+}
+
+TEST_CASE("A render does not depend on when the thread that builds finds time", "[plugin]")
+{
+    const auto u = tone(60.0, 1.0, 0.8);
+    const auto rendered = [&](bool switches) {
+        Processor processor;
+        wants(processor, Mode::speaker);
+        processor.setNonRealtime(true);
+        if (!switches)
+            *processor.parameters().effects()[1] = false;
+        processor.prepareToPlay(rate, 480);
+        return heard(processor, u, [&](std::size_t n) {
+            if (switches && n == 9600)
+                *processor.parameters().effects()[1] = false;
+        });
+    };
+    const auto once = rendered(true);
+    CHECK(rendered(true) == once);
+    const auto without = rendered(false);
+    double apart = 0.0;
+    for (std::size_t n = 24000; n < u.size(); ++n)
+        apart = std::max(apart, std::abs(static_cast<double>(once[n]) - static_cast<double>(without[n])));
+    CHECK(apart < 1e-4);
+    CHECK(once != without);
+}
+
+TEST_CASE("A coil stays as warm as it is through a reset and another preparation", "[plugin]")
+{
+    const auto u = tone(200.0, 0.3, 1.0);
+    const auto loudnessOf = [&](const std::function<void(Processor&)>& between) {
+        Processor processor;
+        auto recipe = processor.parameters().recipe();
+        recipe.mode = Mode::linearize;
+        recipe.fullScale = 20.0;
+        recipe.displacementLimit = 4.0;
+        recipe.powerLimit = 1.0;
+        processor.parameters().set(recipe);
+        processor.prepareToPlay(rate, 480);
+        double sum = 0.0;
+        for (int k = 0; k < 12; ++k) {
+            const auto out = heard(processor, u);
+            if (k >= 6)  // the first second may be louder
+                for (const float value : out)
+                    sum += static_cast<double>(value) * static_cast<double>(value);
+            between(processor);
+        }
+        return sum;
+    };
+    const double through = loudnessOf([](Processor&) {});
+    CHECK(loudnessOf([](Processor& p) { p.reset(); }) < 1.05 * through);
+    CHECK(loudnessOf([](Processor& p) { p.prepareToPlay(rate, 480); }) < 1.05 * through);
+}
+
+TEST_CASE("A recipe takes effect as a whole", "[plugin]")
+{
+    Processor processor;
+    auto recipe = processor.parameters().recipe();
+    recipe.fullScale = 40.0;
+    recipe.displacementLimit = 4.0;
+    recipe.voltageLimit = 1000.0;
+    processor.parameters().set(recipe);
+    processor.prepareToPlay(rate, 480);
+    const auto u = tone(200.0, 0.3, 0.9);
+    heard(processor, u);
+    Listener host;
+    std::vector<float> meanwhile;
+    host.moved = [&](int) {
+        const auto some = heard(processor, tone(200.0, 0.05, 0.9));
+        meanwhile.insert(meanwhile.end(), some.begin(), some.end());
+    };
+    processor.addListener(&host);
+    recipe.mode = Mode::linearize;
+    recipe.voltageLimit = 2.0;
+    processor.parameters().set(recipe);
+    host.moved = {};
+    processor.removeListener(&host);
+    CHECK(!meanwhile.empty());
+    CHECK(loudest(meanwhile) == Approx(0.9f).epsilon(1e-3));  // as it was: bypassed
+    const auto out = heard(processor, u);
+    const auto latency = processor.getLatencySamples();
+    CHECK(40.0f * loudest({out.begin() + latency, out.end()}) < 2.001f);
+}
+
+TEST_CASE("A host is told that there is something to save that no parameter shows", "[plugin]")
+{
+    Processor processor;
+    processor.prepareToPlay(rate, 480);
+    Editor editor(processor);
+    Listener host;
+    processor.addListener(&host);
+    const auto& drivers = plugin::factoryDrivers();
+    editor.use(plugin::modelFromText(drivers.front().text, "a driver"), "a test");
+    CHECK(host.states == 1);
+    editor.undo();
+    CHECK(host.states == 2);
+    const auto state = stateOf(processor);
+    processor.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+    CHECK(host.states == 2);  // else every project that is opened has changed
+    processor.removeListener(&host);
+}
+
+TEST_CASE("A file that says nonsense of its format is told, and nothing else happens", "[plugin]")
+{
+    Processor processor;
+    Editor editor(processor);
+    const juce::TemporaryFile file("x.json");
+    for (const char* text : {R"({"format": 7})", R"({"format": null})", R"({"format": {"a": 1}})", "{}", "[]", "7", ""}) {
+        CAPTURE(text);
+        REQUIRE(file.getFile().replaceWithText(text));
+        const auto before = processor.modelVersion();
+        CHECK_NOTHROW(editor.filesDropped({file.getFile().getFullPathName()}, 0, 0));
+        CHECK(processor.modelVersion() == before);
+    }
+}
+
+TEST_CASE("A driver whose model tells no range has no limit of the excursion, and does not seem to", "[plugin]")
+{
+    const auto driver = plugin::modelFromText(plugin::factoryDrivers().front().text, "a driver");
+    CHECK(plugin::limitsExcursion(driver));
+    CHECK_FALSE(plugin::limitsExcursion(linearPart(driver)));
+}
