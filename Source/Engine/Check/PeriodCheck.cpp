@@ -7,22 +7,12 @@
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 namespace excursion {
 namespace {
-
-std::string rounded(double value, int decimals)
-{
-    std::array<char, 400> text {};  // a fixed 1e308 has 309 digits
-    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed,
-                                            decimals);
-    return error == std::errc() ? std::string(text.data(), end) : std::string("?");
-}
 
 /// Powers of one period of one channel at one level, on each line.
 struct Powers {
@@ -148,7 +138,7 @@ bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, Chann
     }
     if (snr < 20.0)
         problems.push_back({"low-snr", channel.quantity, snr, "dB", false,
-                            "The " + who + " channel has only " + rounded(snr, 0)
+                            "The " + who + " channel has only " + plainText(snr, 0)
                                 + " dB of signal to noise at the loudest level; play louder or average more periods."});
 
     double all = 0.0, scatter = 0.0;
@@ -158,23 +148,23 @@ bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, Chann
     }
     figures.repeatabilityDb = decibelsOf(scatter / all);
     if (*figures.repeatabilityDb > -20.0)
-        problems.push_back({"poor-repeatability", channel.quantity, *figures.repeatabilityDb, "dB",
-                            *figures.repeatabilityDb > -6.0,
-                            "The periods of the " + who + " channel scatter by " + rounded(*figures.repeatabilityDb, 0)
-                                + " dB of the signal; look for a loose contact, wind or a neighbour's noise."});
+        problems.push_back(
+            {"poor-repeatability", channel.quantity, *figures.repeatabilityDb, "dB", *figures.repeatabilityDb > -6.0,
+             "The periods of the " + who + " channel scatter by " + plainText(*figures.repeatabilityDb, 0)
+                 + " dB of the signal; look for a loose contact, wind or a neighbour's noise."});
 
     figures.settlingDb = settling(averages, channel, loudest);
     if (figures.settlingDb && *figures.settlingDb > -60.0)
         problems.push_back({"not-settled", channel.quantity, *figures.settlingDb, "dB",
                             *figures.settlingDb > -20.0 && changedShare(averages, channel, loudest) < changedFrom,
                             "The " + who + " channel has not settled in its first used period, by "
-                                + rounded(*figures.settlingDb, 0)
+                                + plainText(*figures.settlingDb, 0)
                                 + " dB of the signal; play one more settling period."});
 
     if (const auto hum = findHum(averages, channel))
         problems.push_back({"hum", channel.quantity, hum->db, "dB", hum->db > -40.0 && hum->aboveNoise > 6.0,
-                            "The " + who + " channel hums at " + rounded(hum->mains, 0) + " Hz and harmonics, "
-                                + rounded(hum->db, 0)
+                            "The " + who + " channel hums at " + plainText(hum->mains, 0) + " Hz and harmonics, "
+                                + plainText(hum->db, 0)
                                 + " dB of its signal; break the ground loop or shield the cable."});
     return true;
 }
@@ -262,9 +252,9 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
         problems.push_back(
             {"gain-jump", quantity, isOfGain(jump) ? jump.gainDb : jump.db, "dB", jump.db > -30.0,
              isOfGain(jump)
-                 ? "The gain of the " + who + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at " + place
+                 ? "The gain of the " + who + " channel jumps by " + plainText(jump.gainDb, 2) + " dB at " + place
                        + ": look for a loose contact, an automatic gain or a switched range; record again."
-                 : "At " + place + ", what changes in the " + who + " channel is " + rounded(-jump.db, 0)
+                 : "At " + place + ", what changes in the " + who + " channel is " + plainText(-jump.db, 0)
                        + " dB below its signal, and its gain stays: the sensor, or what it sees, has "
                          "moved; record again."});
     }
@@ -290,7 +280,7 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
                  (common ? std::string("All channels break") : "The " + std::string(name(quantity)) + " channel breaks")
                      + " the period at level " + std::to_string(jump.level) + ", realization "
                      + std::to_string(jump.realization) + ", after used period " + std::to_string(jump.period) + ", by "
-                     + rounded(jump.db, 0) + " dB: samples were lost or something knocked; record again."});
+                     + plainText(jump.db, 0) + " dB: samples were lost or something knocked; record again."});
             if (common)
                 break;
         }
@@ -321,7 +311,7 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
         problems.push_back(
             {"clock-drift", common ? std::nullopt : std::optional(quantity), ppm, "ppm", turned > 0.02,
              (common ? std::string("All channels run") : "The " + std::string(name(quantity)) + " channel runs")
-                 + " against the excitation by " + rounded(ppm, 1)
+                 + " against the excitation by " + plainText(ppm, 1)
                  + " ppm: player and recorder are on different clocks; use one device or lock their clocks."});
         if (common)
             break;

@@ -7,8 +7,6 @@
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 
@@ -88,14 +86,6 @@ private:
     const Measurement& take_;
 };
 
-std::string hundredths(double value)
-{
-    std::array<char, 400> text {};
-    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), std::abs(value),
-                                            std::chars_format::fixed, 2);
-    return error == std::errc() ? std::string(text.data(), end) : std::string("?");
-}
-
 Problem delayProblem(Quantity channel, double samples, double sampleRate)
 {
     const double time = std::abs(samples) / sampleRate;
@@ -104,7 +94,7 @@ Problem delayProblem(Quantity channel, double samples, double sampleRate)
             samples,
             "samples",
             true,
-            "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples ("
+            "The " + std::string(name(channel)) + " channel is " + plainText(std::abs(samples), 2) + " samples ("
                 + engineering(time, "s", 3) + ") " + (samples > 0.0 ? "late" : "early")
                 + " against what the physics allows; "
                 + (samples > 0.0 ? "import it with that latency behind its full scale (CHANNEL=QUANTITY:FULLSCALE@"

@@ -4,6 +4,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Estimate/EstimateFrf.h"
+#include "Engine/Numerics/GoldenSection.h"
 #include "Engine/Numerics/QrFactors.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/Motion.h"
@@ -91,26 +92,6 @@ private:
     double sum_ = 0.0, noise_ = 0.0;
 };
 
-/// The least value of a function of one valley between two places, by golden section.
-template <typename Function>
-double leastBetween(double from, double to, int steps, const Function& f)
-{
-    constexpr double golden = 0.6180339887498949;
-    double a = to - golden * (to - from), b = from + golden * (to - from);
-    double fa = f(a), fb = f(b);
-    for (int n = 0; n < steps; ++n)
-        if (fa < fb) {
-            to = std::exchange(b, a);
-            fb = fa;
-            fa = f(a = to - golden * (to - from));
-        } else {
-            from = std::exchange(a, b);
-            fa = fb;
-            fb = f(b = from + golden * (to - from));
-        }
-    return fa < fb ? a : b;
-}
-
 struct Heard {
     double left = 0.0, corner = 0.0;
 };
@@ -120,7 +101,7 @@ double leftAt(const MotionPerSound& sound, double around, double corner, const s
 {
     const double reach = 0.25 / sound.highest();
     const auto left = [&](double delay) { return sound.left(delay, corner, port); };
-    return left(leastBetween(around - reach, around + reach, 14, left));
+    return left(goldenSection(around - reach, around + reach, 14, left).least);
 }
 
 /// The best corner, too.
@@ -138,7 +119,7 @@ Heard bestCorner(const MotionPerSound& sound, double around, const std::optional
             found = true;
         }
     if (found) {
-        const double at = leastBetween(place - step, place + step, 20, left);
+        const double at = goldenSection(place - step, place + step, 20, left).least;
         best = {left(at), std::exp(at)};
     }
     return best;
@@ -167,12 +148,13 @@ Port bestPort(const MotionPerSound& sound, double& around)
     for (int n = 0; n < rounds; ++n) {
         const auto tuned = [&](double logF) { return leftAt(sound, around, 0.0, Port {std::exp(logF), best.quality}); };
         const double f = std::log(best.frequency);
-        best.frequency = std::exp(leastBetween(f - reach_f, f + reach_f, steps, tuned));
+        best.frequency = std::exp(goldenSection(f - reach_f, f + reach_f, steps, tuned).least);
         const auto damped = [&](double logQ) {
             return leftAt(sound, around, 0.0, Port {best.frequency, std::exp(logQ)});
         };
         const double Q = std::log(best.quality);
-        best.quality = std::exp(leastBetween(std::max(Q - reach_Q, std::log(least_Q)), Q + reach_Q, steps, damped));
+        best.quality = std::exp(
+            goldenSection(std::max(Q - reach_Q, std::log(least_Q)), Q + reach_Q, steps, damped).least);
         reach_f *= 0.4;
         reach_Q *= 0.4;
     }

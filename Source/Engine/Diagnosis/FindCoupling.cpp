@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace excursion {
 namespace {
@@ -26,9 +25,7 @@ public:
         score.threads = options.threads;
         chooseResiduals(options_, score, model, record, sections_);
         options_.search = {4, 1e-3};
-        run_.substeps = score.substeps;
-        run_.played = score.played;
-        run_.threads = options.threads;
+        run_ = score.run();
     }
 
     /// The cost after one step of all that is free; infinite where the model runs away.
@@ -39,9 +36,7 @@ public:
         if (!sum)
             return std::numeric_limits<double>::infinity();
         addPrior(model, active, *sum);
-        std::vector<Eigen::Index> all(active.size());
-        std::iota(all.begin(), all.end(), Eigen::Index {0});
-        return predictedCost(*sum, gaussNewtonStep(*sum, all));
+        return predictedCost(*sum, gaussNewtonStep(*sum));
     }
     FitSummary fit(Model& model, double corner, const Progress& progress) const
     {

@@ -9,6 +9,7 @@
 #include "Engine/Loudspeaker/Curve.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion {
 

@@ -20,21 +20,26 @@ std::vector<std::size_t> trialSections(const Record& record, int realizations)
     return sections;
 }
 
+OutputErrorOptions ScoreOptions::run() const
+{
+    OutputErrorOptions run;
+    run.substeps = substeps;
+    run.played = played;
+    run.threads = threads;
+    return run;
+}
+
 Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections,
             const std::vector<Eigen::Index>& active, const ScoreOptions& options, const Progress& progress)
 {
     Sums sums;
     sums.byChannel.resize(record.channels.size());
     sums.power.resize(record.channels.size());
-    OutputErrorOptions run;
-    run.substeps = options.substeps;
-    run.played = options.played;
-    run.threads = options.threads;
     const auto held = validationSections(record);
     for (const auto n : held)
         if (std::find(sections.begin(), sections.end(), n) == sections.end())
             sections.push_back(n);
-    const auto fits = quickError(model, record, sections, active, run, progress);
+    const auto fits = quickError(model, record, sections, active, options.run(), progress);
     for (std::size_t k = 0; k < fits.size(); ++k) {
         const auto n = sections[k];
         if (!fits[k].finite) {

@@ -20,6 +20,8 @@ struct ScoreOptions {
     /// a model that gives the shapes of linear effects; effects that it lacks are not tried. None: the shapes are
     /// searched for
     const Model* shapes = nullptr;
+
+    OutputErrorOptions run() const;  ///< for quickError()
 };
 
 /// The residual of a model and its sensitivities to the parameters: normal equations on the estimation sections and on

@@ -87,11 +87,9 @@ Left WholeSearch::left(const Model& model) const { return left(model, test_.play
 
 Left WholeSearch::left(const Model& model, bool played) const
 {
-    OutputErrorOptions plain;
+    auto plain = test_.run();
     plain.gradient = false;
     plain.played = played;
-    plain.substeps = test_.substeps;
-    plain.threads = options_.threads;
     const auto fits = quickError(model, record_, sections_, {}, plain, silent_);
     const auto sum = sumOf(fits);
     Left left;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/DelayFit.h"
 
+#include "Engine/Numerics/GoldenSection.h"
 #include "Engine/Numerics/QrFactors.h"
 
 #include <algorithm>
@@ -57,27 +58,6 @@ private:
     Eigen::MatrixXd orthogonal_;
 };
 
-double minimumBetween(const Unexplained& unexplained, double low, double high)
-{
-    const double golden = (std::sqrt(5.0) - 1.0) / 2.0;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double costA = unexplained.cost(a), costB = unexplained.cost(b);
-    for (int iteration = 0; iteration < 40; ++iteration) {
-        if (costA < costB) {
-            high = b;
-            b = a;
-            costB = costA;
-            costA = unexplained.cost(a = high - golden * (high - low));
-        } else {
-            low = a;
-            a = b;
-            costA = costB;
-            costB = unexplained.cost(b = low + golden * (high - low));
-        }
-    }
-    return 0.5 * (low + high);
-}
-
 }  // namespace
 
 DelayFit fitDelay(const DelayFitProblem& problem, double longest)
@@ -94,7 +74,10 @@ DelayFit fitDelay(const DelayFitProblem& problem, double longest)
             best = i * step;
         }
     DelayFit fit;
-    fit.seconds = minimumBetween(unexplained, best - step, best + step);
+    constexpr int narrowings = 40;
+    const auto around = goldenSection(best - step, best + step, narrowings,
+                                      [&](double delay) { return unexplained.cost(delay); });
+    fit.seconds = 0.5 * (around.from + around.to);
     bestCost = unexplained.cost(fit.seconds);
     const auto degrees = std::max<Eigen::Index>(1, 2 * problem.omega.size() - unexplained.rank() - 1);
     fit.standardError = std::sqrt(bestCost / static_cast<double>(degrees) / unexplained.sensitivity(fit.seconds));

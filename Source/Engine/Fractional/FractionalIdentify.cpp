@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Fractional/FractionalIdentify.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Fractional/AlphaCurve.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -19,12 +18,6 @@ using Eigen::Index;
 
 constexpr double notKnown = std::numeric_limits<double>::quiet_NaN();
 constexpr double asWell = 2.0;  // a rise of V that two standard errors make
-
-std::string decimals(double x)
-{
-    std::array<char, 32> text;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed, 2).ptr};
-}
 
 Index parametersOf(const FrequencyData& data, int order, bool free)
 {
@@ -98,13 +91,14 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     result.alphaStandardError = inside && second > 0.0 ? std::sqrt(spread / second) : notKnown;
     const auto [low, high] = rangeOf(result.curve, best.V / unit);
     if (!inside)
-        result.warning = "The error falls towards the end of the search at alpha " + decimals(best.alpha)
+        result.warning = "The error falls towards the end of the search at alpha " + plainText(best.alpha, 2)
                          + ", so alpha is not determined.";
     else if (!std::isfinite(result.alphaStandardError)
              || high > best.alpha + 3.0 * result.alphaStandardError + options.gridStep
              || low < best.alpha - 3.0 * result.alphaStandardError - options.gridStep)
         result.warning =
-            "At order " + std::to_string(options.order) + " any alpha from " + decimals(low) + " to " + decimals(high)
+            "At order " + std::to_string(options.order) + " any alpha from " + plainText(low, 2) + " to "
+            + plainText(high, 2)
             + " explains the data within two standard errors, so alpha is not determined; a lower order may tell.";
     if (!result.warning.empty())
         result.alphaStandardError = notKnown;
@@ -167,8 +161,9 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
         if (&entry == &chosen || low > high || (high <= alpha + away && low >= alpha - away))
             continue;
         sweep.warning = "Order and alpha are ambiguous: order " + std::to_string(entry.order)
-                        + " explains the data as well with alpha from " + decimals(low) + " to " + decimals(high)
-                        + "; order " + std::to_string(chosen.order) + " says " + decimals(alpha) + ".";
+                        + " explains the data as well with alpha from " + plainText(low, 2) + " to "
+                        + plainText(high, 2) + "; order " + std::to_string(chosen.order) + " says "
+                        + plainText(alpha, 2) + ".";
         break;
     }
     return sweep;

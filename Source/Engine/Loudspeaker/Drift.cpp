@@ -119,9 +119,7 @@ Drift follow(Model before, const std::vector<std::string>& names, const Search& 
             covariance.row(k).setZero();
             covariance.col(k).setZero();
         }
-        for (const auto r : moved)
-            for (const auto c : moved)
-                covariance(r, c) = drift.model.covariance(r, c);
+        covariance(moved, moved) = Eigen::MatrixXd(drift.model.covariance(moved, moved));
         drift.model.covariance = std::move(covariance);
     }
     for (std::size_t k = 0; k < all.size(); ++k) {

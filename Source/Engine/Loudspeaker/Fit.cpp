@@ -47,20 +47,17 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     };
     if (std::none_of(active.begin(), active.end(), isShape))
         return active;
-    NormalEquations sum;
     fits = errorOf(active, true);
-    for (const auto& section : fits)
-        for (const auto& channel : section.channels)
-            if (section.finite)
-                sum.add(channel);
-    if (sum.N.size() == 0)
+    const auto sum = sumOf(fits);
+    if (!sum || sum->N.size() == 0)
         return active;
     constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
-    const double variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+    const double variance = std::max(1.0, sum->cost / std::max(1.0, sum->rows));
     std::vector<Eigen::Index> kept;
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto k = static_cast<Eigen::Index>(j);
-        if (!isShape(active[j]) || toldOf(*all[static_cast<std::size_t>(active[j])], sum.N(k, k)) > fewTimes * variance)
+        if (!isShape(active[j])
+            || toldOf(*all[static_cast<std::size_t>(active[j])], sum->N(k, k)) > fewTimes * variance)
             kept.push_back(active[j]);
     }
     if (kept.size() < active.size())
@@ -156,9 +153,12 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     Eigen::VectorXd theta = coordinates.now(), slopesOfKept;
     std::vector<SectionFit> tried;  // where slopes were not asked for, last
     KeptSlopes slopes(record, sections);
-    NormalEquations last;                                     // at the last place with slopes, by parameters
-    Eigen::MatrixXd lastPulls, lastOfData;                    // there: of bands, and N without priors
-    bool noiseAtLast = false;                                 // there
+    struct {
+        NormalEquations sum;     // by parameters
+        Eigen::MatrixXd ofData;  // N without priors
+        Eigen::MatrixXd pulls;   // of bands
+        bool onlyNoise = false;
+    } last;                                                   // place with slopes
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
@@ -176,10 +176,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         const Eigen::MatrixXd ofData = sum.N;
         addPrior(model, active, sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
-            last = sum;
-            lastPulls = pullsOf(fits, record, sections);
-            lastOfData = ofData;
-            noiseAtLast = onlyNoise;
+            last = {sum, ofData, pullsOf(fits, record, sections), onlyNoise};
         }
         coordinates.convert(sum, variance);
         sum.held = heldOf(model, active, variance);
@@ -215,23 +212,20 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     if (!summary.usable())
         return summary;
     if (summary.termination == Termination::noSlopes)
-        summary.onlyNoise = noiseAtLast;
-    summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
+        summary.onlyNoise = last.onlyNoise;
+    summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.sum.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
-    const auto covariance = covarianceOf(last.N, scatter);
-    const auto errors = standardErrorsOf(covariance, scatter, lastOfData,
-                                         overdispersionOf(last.N, lastOfData, lastPulls));
+    const auto covariance = covarianceOf(last.sum.N, scatter);
+    const auto errors = standardErrorsOf(covariance, scatter, last.ofData,
+                                         overdispersionOf(last.sum.N, last.ofData, last.pulls));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (auto* p : all)  // what is held is as well known as before
         if (p->free)
             p->standardError = std::numeric_limits<double>::quiet_NaN();
-    for (Eigen::Index r = 0; r < P; ++r) {
-        const auto row = active[static_cast<std::size_t>(r)];
-        for (Eigen::Index c = 0; c < P; ++c)
-            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
-        all[static_cast<std::size_t>(row)]->standardError = errors[r];
-    }
+    model.covariance(active, active) = covariance;
+    for (Eigen::Index r = 0; r < P; ++r)
+        all[static_cast<std::size_t>(active[static_cast<std::size_t>(r)])]->standardError = errors[r];
     return summary;
 }
 

@@ -102,25 +102,6 @@ void addAll(const std::vector<ResponseTarget>& targets, const Model& model, cons
         add(targets[n], responses[n], active, chain, gradient, sum);
 }
 
-/// What is plausible beforehand, against residuals of this variance.
-void addPriors(const Model& model, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& chain,
-               double variance, bool gradient, NormalEquations& sum)
-{
-    const auto all = parametersOf(model);
-    for (std::size_t j = 0; j < active.size(); ++j) {
-        const auto& p = *all[static_cast<std::size_t>(active[j])];
-        if (!std::isfinite(p.prior))
-            continue;
-        const auto k = static_cast<Eigen::Index>(j);
-        const double weight = variance / (p.prior * p.prior);
-        sum.cost += weight * p.value * p.value;
-        if (gradient) {
-            sum.N(k, k) += weight * chain[k] * chain[k];
-            sum.g[k] += weight * chain[k] * p.value;
-        }
-    }
-}
-
 /// Standard errors and covariance from what is left, as if neighbouring points erred independently.
 /// @param origin  values of the active parameters that the search began from
 void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active,
@@ -132,13 +113,12 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     addAll(targets, model, active, Eigen::VectorXd::Ones(P), true, sum);
     const double variance = sum.cost / std::max(1.0, sum.rows - static_cast<double>(P));
     const Eigen::VectorXd alone = sum.N.diagonal();
-    addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
+    addPrior(model, active, sum, variance);
     const auto covariance = covarianceOf(sum.N, variance);
     model.covariance = Eigen::MatrixXd::Zero(count, count);
+    model.covariance(active, active) = covariance;
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
-        for (Eigen::Index c = 0; c < P; ++c)
-            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
         auto& p = *all[static_cast<std::size_t>(row)];
         p.standardError = std::sqrt(covariance(r, r));
         // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over)
@@ -157,13 +137,10 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const auto active = movedIn(model);
     const auto P = static_cast<Eigen::Index>(active.size());
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(P);
     NormalEquations sum;
-    addAll(targets, model, active, ones, true, sum);
-    addPriors(model, active, ones, sum.cost / std::max(1.0, sum.rows), true, sum);
-    std::vector<Eigen::Index> every(active.size());
-    std::iota(every.begin(), every.end(), Eigen::Index {0});
-    const auto d = gaussNewtonStep(sum, every);
+    addAll(targets, model, active, Eigen::VectorXd::Ones(P), true, sum);
+    addPrior(model, active, sum, sum.cost / std::max(1.0, sum.rows));
+    const auto d = gaussNewtonStep(sum);
     const auto all = parametersOf(model);
     const auto newest = model.components.back().parameters.data();
     for (Eigen::Index k = 0; k < P; ++k) {
@@ -227,7 +204,7 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
         addAll(targets, model, active, chain, gradient, sum);
         if (variance == 0.0)
             variance = sum.cost / std::max(1.0, sum.rows);
-        addPriors(model, active, chain, variance, gradient, sum);
+        addPrior(model, active, sum, variance, chain);
         return std::isfinite(sum.cost);
     };
     const Eigen::VectorXd start = y;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace excursion {
 namespace {
@@ -247,7 +248,8 @@ double worstPower(const std::vector<SectionFit>& fits)
     return worst;
 }
 
-void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance)
+void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance,
+              const Eigen::VectorXd& slopes)
 {
     const auto all = parametersOf(model);
     for (std::size_t j = 0; j < active.size(); ++j) {
@@ -258,8 +260,9 @@ void addPrior(const Model& model, const std::vector<Eigen::Index>& active, Norma
         sum.cost += weight * p.value * p.value;
         if (sum.N.size() > 0) {
             const auto k = static_cast<Eigen::Index>(j);
-            sum.N(k, k) += weight;
-            sum.g[k] += weight * p.value;
+            const double slope = slopes.size() > 0 ? slopes[k] : 1.0;
+            sum.N(k, k) += weight * slope * slope;
+            sum.g[k] += weight * slope * p.value;
         }
     }
 }

@@ -66,7 +66,9 @@ double worstPower(const std::vector<SectionFit>&);
 /// Adds the priors: variance (parameter/prior)^2 for each active parameter that has a prior. The variance is that of
 /// the residuals: while something large is missing in the model, the residual says as little about a shape as noise of
 /// that size would.
-void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&, double variance = 1.0);
+/// @param slopes  of the active parameters by what the normal equations are by; none where that is the parameters
+void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&, double variance = 1.0,
+              const Eigen::VectorXd& slopes = {});
 
 /// Indices of the free parameters of a model.
 std::vector<Eigen::Index> freeParameters(const Model&);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace excursion {
@@ -90,13 +91,8 @@ Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector
     Eigen::VectorXd full = Eigen::VectorXd::Zero(normal.g.size());
     if (P == 0)
         return full;
-    Eigen::MatrixXd N(P, P);
-    Eigen::VectorXd g(P);
-    for (Eigen::Index r = 0; r < P; ++r) {
-        g[r] = normal.g[use[static_cast<std::size_t>(r)]];
-        for (Eigen::Index c = 0; c < P; ++c)
-            N(r, c) = normal.N(use[static_cast<std::size_t>(r)], use[static_cast<std::size_t>(c)]);
-    }
+    const Eigen::MatrixXd N = normal.N(use, use);
+    const Eigen::VectorXd g = normal.g(use);
     const ScaledSpectrum spectrum(N);
     const double largest = spectrum.largest();
     Eigen::VectorXd step = Eigen::VectorXd::Zero(P);
@@ -105,9 +101,15 @@ Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector
         if (spectrum.values[k] > unseen * largest)
             step -= spectrum.vectors.col(k) * (spectrum.vectors.col(k).dot(scaled) / spectrum.values[k]);
     step = spectrum.scale.cwiseProduct(step);
-    for (Eigen::Index k = 0; k < P; ++k)
-        full[use[static_cast<std::size_t>(k)]] = step[k];
+    full(use) = step;
     return full;
+}
+
+Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal)
+{
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(normal.g.size()));
+    std::iota(all.begin(), all.end(), Eigen::Index {0});
+    return gaussNewtonStep(normal, all);
 }
 
 }  // namespace excursion

@@ -52,5 +52,6 @@ double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, co
 
 /// min |r + J d| over the columns `use` only: the step, with columns scaled and unseen directions left out.
 Eigen::VectorXd gaussNewtonStep(const NormalEquations&, const std::vector<Eigen::Index>& use);
+Eigen::VectorXd gaussNewtonStep(const NormalEquations&);  ///< over all columns
 
 }  // namespace excursion
