@@ -56,7 +56,7 @@ void LiveLadder::show(const Rung& rung)
     const auto& comparison = rung.comparison;
     if (rung.added.empty() && rungs_ > 0) {
         terminal_.say(std::exchange(again_, true)
-                          ? "\nThat left more. The ladder stands as it was:"
+                          ? "\nThat fits worse. The earlier ladder is kept:"
                           : "\nThe recorder's coupling was found. The ladder begins again without it:");
         rungs_ = 0;
         titles_.clear();

@@ -35,7 +35,6 @@ LinearizePage::LinearizePage(Window& window)
     drivers_.onChange = [this] {
         if (const int k = drivers_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryDrivers()[static_cast<std::size_t>(k)];
-            drivers_.setSelectedId(0, juce::dontSendNotification);  // the same one may be wanted again
             window_.use(modelFromText(factory.text, factory.title), "the factory");
         }
     };
@@ -46,7 +45,6 @@ LinearizePage::LinearizePage(Window& window)
         if (const int k = recipes_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
             const auto recipe = recipeFromText(factory.text, factory.title);
-            recipes_.setSelectedId(0, juce::dontSendNotification);  // as above
             const auto put = [this](const Recipe& which, const Between& between) {
                 processor_.parameters().set(which, between);
                 follow();
@@ -97,6 +95,7 @@ void LinearizePage::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
+    drivers_.setSelectedId(0, juce::dontSendNotification);
     const bool coil = hasCoil(model), moves = givesExcursion(model);
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
@@ -130,6 +129,11 @@ void LinearizePage::showDriver(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
                   juce::dontSendNotification);
+    const auto& drivers = factoryDrivers();
+    const auto named = std::find_if(drivers.begin(), drivers.end(),
+                                    [&](const auto& factory) { return factory.title == model.name; });
+    drivers_.setSelectedId(named == drivers.end() ? 0 : static_cast<int>(named - drivers.begin()) + 1,
+                           juce::dontSendNotification);
     auto plots = effectPlots(model);
     for (auto& plot : plots)
         plot.key = false;
@@ -280,11 +284,12 @@ void LinearizePage::follow()
     for (auto& one : switches_)
         one->follow();
     const auto title = words(processor_.parameters().recipe().title);
-    if (const auto shown = title.isEmpty() ? juce::String("Recipes") : title;
-        shown != recipes_.getTextWhenNothingSelected()) {
-        recipes_.setTextWhenNothingSelected(shown);
-        recipes_.repaint();
-    }
+    if (recipes_.isPopupActive() || title == recipes_.getText())
+        return;
+    if (title.isEmpty())
+        recipes_.setSelectedId(0, juce::dontSendNotification);
+    else
+        recipes_.setText(title, juce::dontSendNotification);
 }
 
 void LinearizePage::tick()

@@ -44,7 +44,15 @@ private:
 
     Processor& processor_;
     juce::Label name_, forecastWords_, facts_;
-    juce::ComboBox drivers_, recipes_;
+    /// A list of which the entry that was chosen last can be chosen again.
+    struct Menu : juce::ComboBox {
+        void showPopup() override
+        {
+            setSelectedId(0, juce::dontSendNotification);
+            juce::ComboBox::showPopup();
+        }
+    };
+    Menu drivers_, recipes_;
     juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"};
     ChoiceBox mode_;
     /// each behind its title

@@ -87,12 +87,15 @@ Settings Parameters::settings() const
     return settings;
 }
 
-void Parameters::read(Settings& into) const
+bool Parameters::read(Settings& into) const
 {
-    const auto before = beginsAndEnds_.load();
-    auto now = settings();
-    if (before % 2 == 0 && beginsAndEnds_.load() == before)
-        into = std::move(now);
+    const auto before = beginsAndEnds_.load(std::memory_order_acquire);
+    const auto now = settings();
+    std::atomic_thread_fence(std::memory_order_acquire);
+    const bool whole = before % 2 == 0 && beginsAndEnds_.load(std::memory_order_relaxed) == before;
+    if (whole)
+        into = now;
+    return whole;
 }
 
 ChainControls Parameters::controls(double measuredDisplacement) const
@@ -134,24 +137,28 @@ Between Parameters::between() const
     return found;
 }
 
-namespace {
-
 /// While it lives a recipe is being set.
-class Setting {
+class Parameters::Setting {
 public:
-    explicit Setting(std::atomic<unsigned>& beginsAndEnds) : beginsAndEnds_(beginsAndEnds)
+    explicit Setting(Parameters& parameters) : alone_(parameters.setting_), parameters_(parameters)
     {
-        beginsAndEnds_.fetch_add(1);
+        if (parameters_.depth_++ > 0)
+            return;
+        parameters_.beginsAndEnds_.fetch_add(1, std::memory_order_relaxed);
+        std::atomic_thread_fence(std::memory_order_release);
     }
     Setting(const Setting&) = delete;
     Setting& operator=(const Setting&) = delete;
-    ~Setting() { beginsAndEnds_.fetch_add(1); }
+    ~Setting()
+    {
+        if (--parameters_.depth_ == 0)
+            parameters_.beginsAndEnds_.fetch_add(1, std::memory_order_release);
+    }
 
 private:
-    std::atomic<unsigned>& beginsAndEnds_;
+    std::lock_guard<std::recursive_mutex> alone_;
+    Parameters& parameters_;
 };
-
-}  // namespace
 
 void Parameters::storeCurve(const ThirdOctaves& curve)
 {
@@ -161,8 +168,7 @@ void Parameters::storeCurve(const ThirdOctaves& curve)
 
 void Parameters::setCurve(const ThirdOctaves& curve)
 {
-    const std::lock_guard alone(setting_);
-    const Setting setting(beginsAndEnds_);
+    const Setting setting(*this);
     storeCurve(curve);
 }
 
@@ -179,8 +185,7 @@ void Parameters::set(const Recipe& recipe, const Between& between)
         title_ = recipe.title;
         words_ = recipe.words;
     }
-    const std::lock_guard alone(setting_);
-    const Setting setting(beginsAndEnds_);
+    const Setting setting(*this);
     put(*mode_, mode_->proportionOf(static_cast<int>(recipe.mode)));
     fullScale_->set(recipe.fullScale);
     amount_->set(recipe.amount);

@@ -39,8 +39,10 @@ public:
 
     /// For the audio thread as well.
     Settings settings() const;
-    /// The same, unless a recipe is being set, of which it would see a part: then they stay as they are. Wait-free.
-    void read(Settings&) const;
+    /// The same, unless a recipe is being set, of which it would see a part: then they stay as they are, and it
+    /// returns false. Wait-free.
+    bool read(Settings&) const;
+    bool areBeingSet() const { return beginsAndEnds_.load(std::memory_order_acquire) % 2 != 0; }
     ChainControls controls(double measuredDisplacement) const;
     std::uint64_t switches() const;  ///< a bit for every effect that is on
 
@@ -54,6 +56,7 @@ public:
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
+    class Setting;
     void storeCurve(const ThirdOctaves&);
 
     Choice *mode_, *target_;
@@ -61,7 +64,8 @@ private:
     Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};
-    std::mutex setting_;                       ///< one recipe at a time
+    std::recursive_mutex setting_;             ///< one recipe at a time; a host may set another in its callback
+    int depth_ = 0;                            ///< of such callbacks
     std::atomic<unsigned> beginsAndEnds_ {0};  ///< of recipes that were set; odd while one is
     mutable std::mutex mutex_;                 ///< of what follows; never locked on the audio thread
     std::string title_, words_;

@@ -87,8 +87,7 @@ Processor::Chains Processor::chains(const AnyModel& model, std::size_t channels)
     return result;
 }
 
-/// With the mutex held: new chains for the model, which play at once where nothing has been heard yet, and else are
-/// offered.
+/// With the mutex held: offers new chains for the model.
 /// @returns their latency
 int Processor::build(const AnyModel& model)
 {
@@ -100,15 +99,7 @@ int Processor::build(const AnyModel& model)
         chain->process(silence.data(), silence.data(), silence.size());
         chain->reset();
     }
-    {
-        const juce::ScopedLock still(getCallbackLock());
-        if (!heard_.load()) {
-            if (!channels_.empty())
-                playAlone(std::move(fresh));
-            return latency;
-        }
-    }
-    // All of them at last: no channel is to wait for another.
+    // Offered together at the end, so that no channel switches before another.
     for (std::size_t k = 0; k < channels_.size(); ++k)
         channels_[k]->offer(std::move(fresh[k]), latency);
     return latency;
@@ -117,28 +108,28 @@ int Processor::build(const AnyModel& model)
 /// With the mutex held, while no audio runs: chains that play from the first sample on. A coil stays as warm as it is.
 void Processor::playAlone(Chains fresh)
 {
-    const auto before = std::exchange(channels_, {});
+    std::vector<std::unique_ptr<Crossfade<ModelChain>>> channels;
     for (std::size_t k = 0; k < fresh.size(); ++k) {
-        if (k < before.size() && before[k]->current() != nullptr)
-            fresh[k]->takeOver(*before[k]->current());
-        channels_.push_back(std::make_unique<Crossfade<ModelChain>>(static_cast<int>(fadeTime * sampleRate_),
-                                                                    static_cast<int>(warmTime * sampleRate_)));
-        channels_.back()->start(std::move(fresh[k]));
+        if (k < channels_.size() && channels_[k]->current() != nullptr)
+            fresh[k]->takeOver(*channels_[k]->current());
+        channels.push_back(std::make_unique<Crossfade<ModelChain>>(static_cast<int>(fadeTime * sampleRate_),
+                                                                   static_cast<int>(warmTime * sampleRate_)));
+        channels.back()->start(std::move(fresh[k]));
     }
-    heard_.store(false);
+    channels_ = std::move(channels);
 }
 
 /// With the mutex held: new chains where effects have been switched.
 void Processor::followSwitches()
 {
-    if (channels_.empty() || parameters_.switches() == switches_)
+    if (channels_.empty() || parameters_.areBeingSet() || parameters_.switches() == switches_)
         return;
     try {
         if (box_)
             switches_ = parameters_.switches();  // it has no effects
         else
             build(model_);
-    } catch (const Error&) {
+    } catch (const std::exception&) {
         // Without some effect the model cannot be run: what plays goes on.
     }
 }
@@ -249,6 +240,7 @@ int Processor::start()
     delays_.clear();
     standstill_.clear();
     heard_.store(false);
+    parameters_.read(settings_);
     const auto count = static_cast<std::size_t>(getMainBusNumOutputChannels());
     try {
         if (std::string reason; !RealTimeOptions {sampleRate_, oversampling}.isValid(&reason))
@@ -269,9 +261,7 @@ int Processor::start()
 
 void Processor::reset()
 {
-    for (const auto& channel : channels_)
-        channel->jump();
-    heard_.store(false);  // the first block begins with what is wanted then
+    heard_.store(false);
     for (auto& delay : delays_)
         delay.reset();
 }
@@ -286,20 +276,21 @@ bool Processor::isBusesLayoutSupported(const BusesLayout& layout) const
 template <class Sample>
 void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
 {
+    if (buffer.getNumSamples() == 0)  // some hosts only bring parameters
+        return;
     const bool offline = isNonRealtime();
-    if (offline) {  // what is rendered does not depend on when another thread finds time
+    if (offline && !channels_.empty()) {  // what is rendered does not depend on when another thread finds time
         const std::lock_guard lock(mutex_);
         followSwitches();
     }
-    const bool begins = !heard_.exchange(true);
-    if (begins)
-        settings_ = parameters_.settings();
-    else
-        parameters_.read(settings_);
+    const bool whole = parameters_.read(settings_), first = whole && !heard_.exchange(true),
+               begins = std::exchange(offline_, offline) != offline || first;
     int faults = 0;
     const std::size_t channels = std::max(channels_.size(), delays_.size());
     for (std::size_t c = 0; c < channels && static_cast<int>(c) < buffer.getNumChannels(); ++c) {
         auto* const channel = channels_.empty() ? nullptr : channels_[c].get();
+        if (channel != nullptr && begins)
+            channel->jump();
         if (channel != nullptr)
             channel->each([&](ModelChain& chain) {
                 auto controls = chainControls(settings_, chain.measuredDisplacement);

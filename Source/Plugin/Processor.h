@@ -119,7 +119,9 @@ private:
     RealTimeOptions options() const;
 
     Parameters parameters_;
-    mutable std::mutex mutex_;  ///< of what follows; never locked on the audio thread
+    /// of what follows; locked on the audio thread in a render alone, where the host's lock of that thread is held:
+    /// whoever holds this one waits for that one only while no chain runs
+    mutable std::mutex mutex_;
     Model model_;
     LoadedBoxPointer box_;  ///< null: the driver plays
     std::atomic<std::uint64_t> modelVersion_ {1};
@@ -130,9 +132,11 @@ private:
     std::vector<std::unique_ptr<Crossfade<ModelChain>>> channels_;  ///< these two are changed only while no audio runs
     /// in place of the channels, where no chain can run
     std::vector<Delay> delays_;
-    /// Something was played since the chains began or were reset; before that they may be put in place of each other.
+    /// Something was played since the preparation or the last reset. If not, the next block plays the newest model
+    /// and settings at once, without a fade.
     std::atomic<bool> heard_ {false};
-    Settings settings_;  ///< as the audio thread has read them last
+    Settings settings_;     ///< as the audio thread has read them last
+    bool offline_ = false;  ///< of the last block
     std::array<double, 256> block_ {};
     Peak displacement_, region_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};

@@ -6,8 +6,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <thread>
 
@@ -25,13 +27,14 @@ std::vector<float> tone(double frequency, double seconds, double amplitude)
 {
     std::vector<float> u(static_cast<std::size_t>(rate * seconds));
     for (std::size_t n = 0; n < u.size(); ++n)
-        u[n] = static_cast<float>(
-            amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate));
+        u[n] = static_cast<float>(amplitude
+                                  * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate));
     return u;
 }
 
-std::vector<float> heard(Processor& processor, const std::vector<float>& u,
-                         const std::function<void(std::size_t)>& after = [](std::size_t) {})
+std::vector<float> heard(
+    Processor& processor, const std::vector<float>& u,
+    const std::function<void(std::size_t)>& after = [](std::size_t) {})
 {
     return playedInBlocks(
         u, [&](auto& buffer, auto& midi) { processor.processBlock(buffer, midi); }, after);
@@ -85,6 +88,10 @@ TEST_CASE("A state counts from the first sample on, whether it comes before or a
     restore(early);
     early.prepareToPlay(rate, 480);
     late.prepareToPlay(rate, 480);
+    heard(late, {});
+    juce::AudioBuffer<float> none(2, 0);  // as hosts bring parameters
+    juce::MidiBuffer midi;
+    late.processBlock(none, midi);
     restore(late);
     CHECK(late.getLatencySamples() == early.getLatencySamples());
     const auto expected = heard(early, u);
@@ -124,6 +131,54 @@ TEST_CASE("A render does not depend on when the thread that builds finds time", 
         apart = std::max(apart, std::abs(static_cast<double>(once[n]) - static_cast<double>(without[n])));
     CHECK(apart < 1e-4);
     CHECK(once != without);
+}
+
+TEST_CASE("A render goes on while models and switches are changed", "[plugin]")
+{
+    // As wrappers do, with the host's lock held: whoever builds must not wait for that with a lock of its own.
+    Processor processor;
+    wants(processor, Mode::speaker);
+    processor.setNonRealtime(true);
+    processor.prepareToPlay(rate, 480);
+    std::atomic<bool> finite {true};
+    std::atomic<int> blocks {0};
+    std::jthread rendering([&](const std::stop_token& stop) {
+        juce::AudioBuffer<float> buffer(2, 480);
+        juce::MidiBuffer midi;
+        while (!stop.stop_requested()) {
+            const juce::ScopedLock host(processor.getCallbackLock());
+            for (int c = 0; c < 2; ++c)
+                buffer.copyFrom(c, 0, tone(60.0, 0.01, 0.5).data(), 480);
+            processor.processBlock(buffer, midi);
+            finite = finite && std::isfinite(buffer.getSample(0, 479));
+            ++blocks;
+        }
+    });
+    for (int round = 0; round < 6; ++round) {
+        const auto& drivers = plugin::factoryDrivers();
+        processor.setModel(
+            plugin::modelFromText(drivers[static_cast<std::size_t>(round) % drivers.size()].text, "a driver"));
+        *processor.parameters().effects()[static_cast<std::size_t>(round)] = false;
+        const int before = blocks;
+        while (blocks < before + 5)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    CHECK(finite);
+    // And a render begins cold, whatever was played before it.
+    rendering.request_stop();
+    rendering.join();
+    const auto u = tone(60.0, 0.2, 0.9);
+    const auto state = stateOf(processor);
+    const auto rendered = [&](bool playsBefore) {
+        Processor other;
+        other.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+        other.prepareToPlay(rate, 480);
+        if (playsBefore)
+            heard(other, tone(130.0, 0.25, 0.7));
+        other.setNonRealtime(true);
+        return heard(other, u);
+    };
+    CHECK(rendered(true) == rendered(false));
 }
 
 TEST_CASE("A coil stays as warm as it is through a reset and another preparation", "[plugin]")
@@ -206,11 +261,12 @@ TEST_CASE("A file that says nonsense of its format is told, and nothing else hap
     Processor processor;
     Editor editor(processor);
     const juce::TemporaryFile file("x.json");
-    for (const char* text : {R"({"format": 7})", R"({"format": null})", R"({"format": {"a": 1}})", "{}", "[]", "7", ""}) {
+    for (const char* text :
+         {R"({"format": 7})", R"({"format": null})", R"({"format": {"a": 1}})", "{}", "[]", "7", ""}) {
         CAPTURE(text);
         REQUIRE(file.getFile().replaceWithText(text));
         const auto before = processor.modelVersion();
-        CHECK_NOTHROW(editor.filesDropped({file.getFile().getFullPathName()}, 0, 0));
+        CHECK_NOTHROW(editor.load(file.getFile()));
         CHECK(processor.modelVersion() == before);
     }
 }

@@ -281,6 +281,27 @@ TEST_CASE("A trim that moves from behind the loudspeaker to before it passes no 
     }
 }
 
+TEST_CASE("A chain that begins loud rings before by no more than its filters do", "[chain]")
+{
+    for (const double fullScale : {1.0, 100.0})
+        for (const double trim : {0.01, 1.0, 16.0})
+            for (const auto mode : {Mode::linearize, Mode::speaker}) {
+                CAPTURE(fullScale, trim, name(mode));
+                auto some = controls(mode);
+                some.fullScale = fullScale;
+                some.trim = trim;
+                some.predistortion.amount = 0.0;
+                Chain chain(linearPart(everything()), {48000.0, 2}, some);
+                std::vector<double> u(4800, 0.5 / fullScale / std::max(1.0, trim));
+                const double step = u.front() * trim;
+                chain.process(u.data(), u.data(), u.size());
+                double before = 0.0;
+                for (int n = 0; n < chain.latency() - 1; ++n)
+                    before = std::max(before, std::abs(u[static_cast<std::size_t>(n)]));
+                CHECK(before < 0.15 * step);
+            }
+}
+
 TEST_CASE("The sound of a linearized loudspeaker is not cut at the limit of its voltage", "[chain]")
 {
     // A high-pass makes the edges of a low tone's square nearly twice as high.

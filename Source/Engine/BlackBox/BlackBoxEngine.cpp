@@ -43,7 +43,8 @@ void BlackBoxEngine::warm(double heat)
 
 void BlackBoxEngine::set(const PredistortionControls& controls)
 {
-    voltageLimit_ = controls.voltageLimit;
+    if (controls.areSound())
+        voltageLimit_ = controls.voltageLimit;
     if (bend_)
         bend_->set(controls);
 }

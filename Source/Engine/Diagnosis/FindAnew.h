@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-// Progress of these is asked for whether to stop, and told nothing.
+// These only check Progress for cancellation; they report nothing.
 
 /// Finds linear effects of a model anew, one after the other, on the responses of the record without laws: no small
 /// step leads from a wrong shape to the right one. True if one is kept.

@@ -47,7 +47,7 @@ std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, cons
     constexpr int mostRaises = 3;
     for (int n = 0; n < mostRaises; ++n) {
         auto higher = model;
-        if (raiseDegrees(higher, record, score, share).empty())
+        if (raiseDegrees(higher, record, score, share, degreesAtOnce, progress.silent()).empty())
             break;
         const auto part = progress.part(static_cast<double>(n) / mostRaises, (n + 1.0) / mostRaises);
         const auto next = fitFed(higher, record, sections, options, part);

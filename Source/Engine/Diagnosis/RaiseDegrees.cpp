@@ -20,7 +20,7 @@ constexpr int highestFarOff = 18;
 }  // namespace
 
 std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, double share,
-                                      int by)
+                                      int by, const Progress& progress)
 {
     std::vector<std::string> raised;
     // All laws with room are raised at once; then each is judged on its own columns.
@@ -35,7 +35,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     if (candidates.empty())
         return raised;
     const auto active = freeParameters(higher);
-    const auto sums = sumsOf(higher, record, estimationSections(record), active, options, {});
+    const auto sums = sumsOf(higher, record, estimationSections(record), active, options, progress);
     if (!sums.finite)
         return raised;
     std::vector<Eigen::Index> old;

@@ -21,7 +21,7 @@ inline constexpr int degreesAtOnce = 4;
 /// that were raised. The new coefficients start at zero.
 /// @param share  of the cost by which each must also lower it
 std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, double share = 0.0,
-                                      int by = degreesAtOnce);
+                                      int by = degreesAtOnce, const Progress& = {});
 
 /// Places in parameterVector() of what law k has by its `by` highest degrees.
 std::vector<Eigen::Index> highestCoefficients(const Model&, std::size_t k, int by = degreesAtOnce);

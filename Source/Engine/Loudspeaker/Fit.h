@@ -28,8 +28,8 @@ struct FitOptions {
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
                        ///< and nearly as good, for starts and trials; a take without periods is simulated all the same
 
-    /// What is free is the caller's choice. Else the coil's damping is held where only laws could tell it from the
-    /// suspension's and the model has none.
+    /// What is free is the caller's choice. Otherwise Rms is held where, without a current channel, only laws could
+    /// tell it from the coil's damping and the model has none.
     bool asGiven = false;
 
     bool isValid(std::string* reason) const;

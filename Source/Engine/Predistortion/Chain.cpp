@@ -78,7 +78,10 @@ void Chain::set(const ChainControls& controls)
     engine_->set(controls.predistortion);
     engine_->turn(bends);
     strict_ = mode == Mode::linearize;
-    limit_ = bends ? controls.predistortion.voltageLimit : std::numeric_limits<double>::infinity();
+    if (!bends)
+        limit_ = std::numeric_limits<double>::infinity();
+    else if (controls.predistortion.areSound())
+        limit_ = controls.predistortion.voltageLimit;
     if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0
         && std::isfinite(controls.trim)) {
         fullScale_.aim(controls.fullScale);
@@ -116,7 +119,8 @@ void Chain::reset()
     plainGain_.jump(1.0);
     loudest_ = 0.0;
     since_ = 0;
-    std::fill(plain_.begin(), plain_.end(), Passing {});
+    std::fill(plain_.begin(), plain_.end(),
+              Passing {0.0, fullScale_.target(), split(trim_.target(), place_.target()).second});
     plainAt_ = 0;
 }
 
