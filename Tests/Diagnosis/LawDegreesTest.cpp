@@ -136,3 +136,30 @@ TEST_CASE("A law goes beyond the 18th degree near the noise alone", "[diagnosis]
     record.noiseKnown = false;
     CHECK(raisedFrom(18) == 18);
 }
+
+TEST_CASE("A law that runs away where no fit has been is expanded less", "[diagnosis]")
+{
+    Bent wild("stiffness", 14, 0.2);
+    int loudest = 0;
+    for (const auto& section : wild.record.sections)
+        loudest = std::max(loudest, section.level);
+    for (auto& section : wild.record.sections)  // the fit sees the cone move less far than the law reaches
+        section.validation = section.level == loudest;
+    wild.fitFurther();
+    const auto leaves = [&](const std::vector<std::size_t>& sections) {
+        const auto sum = quickSum(wild.model, wild.record, sections, wild.options);
+        REQUIRE(sum);
+        return sum->cost / sum->rows;
+    };
+    const auto seen = estimationSections(wild.record), unseen = validationSections(wild.record);
+    const double before = leaves(unseen);
+    REQUIRE(before > 2.0 * leaves(seen));
+    lowerAsUnseenTells(wild.model, wild.summary, wild.record, seen, wild.options);
+    CHECK(wild.model.components[1].operatingRange.degree < 14);
+    CHECK(leaves(unseen) < 0.5 * before);
+    CHECK(leaves(seen) < 1.1);
+    CHECK(wild.summary.chiSquaredPerValue == Approx(leaves(seen)).epsilon(0.02));
+    const auto settled = wild.model;
+    lowerAsUnseenTells(wild.model, wild.summary, wild.record, seen, wild.options);
+    CHECK(parameterVector(wild.model) == parameterVector(settled));
+}

@@ -39,6 +39,12 @@ std::optional<Gain> gainOf(const Model& higher, const Model& lower, const Record
 
 }  // namespace
 
+bool speaksAgainst(const Model& higher, const Model& lower, const Record& record, const FitOptions& options)
+{
+    const auto gain = gainOf(higher, lower, record, validationSections(record), options);
+    return !gain || gain->cost < -gain->price;
+}
+
 std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                         const FitOptions& options, const ScoreOptions& score, double share,
                                         const Progress& progress)
@@ -55,6 +61,8 @@ std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, cons
             break;
         // What the slopes of fed laws promise need not come.
         if (const auto gain = gainOf(higher, model, record, sections, options); !gain || !gain->pays())
+            break;
+        if (speaksAgainst(higher, model, record, options))
             break;
         model = std::move(higher);
         last = next;
@@ -97,6 +105,52 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
         p.standardError = before.standardError * std::sqrt(lower.covariance(row, row) / C(rest[j], rest[j]));
     }
     return lower;
+}
+
+void lowerAsUnseenTells(Model& model, FitSummary& summary, const Record& record,
+                        const std::vector<std::size_t>& sections, FitOptions options)
+{
+    options.fedGradient = true;  // costs of simulations
+    options.substeps = summary.substeps;
+    const auto held = validationSections(record);
+    const auto leaves = [&](const Model& which, const std::vector<std::size_t>& of) {
+        return quickSum(which, record, of, options);
+    };
+    constexpr double as = 1.1;  // much more than of what was fitted
+    auto seen = leaves(model, sections), unseen = leaves(model, held);
+    while (record.noiseKnown && seen && unseen && model.covariance.size() > 0
+           && unseen->cost / unseen->rows > as * std::max(1.0, seen->cost / seen->rows)) {
+        std::optional<Model> best;
+        NormalEquations bestSeen, bestUnseen;
+        double most = 0.0;  // less that both leave
+        for (std::size_t k = 1; k < model.components.size(); ++k) {
+            const auto& component = model.components[k];
+            if (!component.effect->law() || component.operatingRange.degree - degreesAtOnce < OperatingRange {}.degree
+                || !std::isfinite(worthOfHighest(model, k)))
+                continue;
+            auto lower = withLowerLaw(model, k);
+            const auto then = leaves(lower, sections), unseenThen = leaves(lower, held);
+            if (!then || !unseenThen)
+                continue;
+            const double less = unseen->cost - unseenThen->cost + seen->cost - then->cost;
+            if (!(less > most))
+                continue;
+            most = less;
+            best = std::move(lower);
+            bestSeen = *then;
+            bestUnseen = *unseenThen;
+        }
+        if (!best)
+            break;
+        const double freedom = summary.finalCost / summary.chiSquaredPerValue
+                               + static_cast<double>(freeParameters(model).size())
+                               - static_cast<double>(freeParameters(*best).size());
+        summary.finalCost += bestSeen.cost - seen->cost;
+        summary.chiSquaredPerValue = summary.finalCost / freedom;
+        model = std::move(*best);
+        seen = std::move(bestSeen);
+        unseen = std::move(bestUnseen);
+    }
 }
 
 void lowerAsItPays(Model& model, FitSummary& summary, const Record& record, const std::vector<std::size_t>& sections,

@@ -17,6 +17,10 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
                                         const FitOptions&, const ScoreOptions& score, double share,
                                         const Progress& = {});
 
+/// Whether laws of a higher degree leave more of the sections that no fit saw than their price, or run away there: a
+/// polynomial may go anywhere between and beyond the places that its fit has visited.
+bool speaksAgainst(const Model& higher, const Model& lower, const Record&, const FitOptions&);
+
 /// Law k without its highest coefficients theta_b, as many as a raise brings, and the other parameters theta_r where
 /// the covariance C of the last fit has the least cost then:
 ///     theta_r <- theta_r - C_rb C_bb^-1 theta_b,   C_rr <- C_rr - C_rb C_bb^-1 C_br.
@@ -28,5 +32,9 @@ Model withLowerLaw(const Model&, std::size_t k, int by = degreesAtOnce);
 /// whose summary is given, whose cost follows. Each is checked by a simulation: where that leaves more than
 /// the parabola says, the law stays as it is.
 void lowerAsItPays(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
+
+/// Lowers laws further in the same way where sections that no fit saw are left with more than those that were fitted,
+/// as long as both together are left with less.
+void lowerAsUnseenTells(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
 
 }  // namespace excursion

@@ -60,10 +60,12 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a
     // share that is worth it.
     const double least = record.noiseKnown && unit < nearNoise ? share * now : 0.02 * now;
+    // What slopes promise of the old parameters has not come true yet.
+    const bool isNear = record.noiseKnown && sums.estimation.cost < nearNoise * std::max(1.0, sums.estimation.rows);
     Model result = model;
     for (const auto k : candidates) {
         const int degree = model.components[k].operatingRange.degree + by;
-        if (degree > highestFarOff && !(record.noiseKnown && unit < nearNoise))
+        if (degree > highestFarOff && !isNear)
             continue;
         auto use = old;
         use.insert(use.end(), added[k].begin(), added[k].end());

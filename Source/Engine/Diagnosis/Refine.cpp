@@ -114,8 +114,13 @@ FitSummary fitWithRoom(Model& model, const Record& record, const std::vector<std
             auto next = run(*one, alongTheFloor, false, true, 0.5, 1.0);
             if (!next.usable())
                 continue;
-            if (one != &model)
+            if (one != &model) {
+                auto played = fine;
+                played.fedGradient = true;  // costs of simulations
+                if (speaksAgainst(*one, model, record, played))
+                    continue;
                 model = std::move(*one);
+            }
             return next;
         }
         return summary;
@@ -132,8 +137,10 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
 {
     const auto sections = estimationSections(record);
     auto summary = fitWithRoom(model, record, sections, options, toTheEnd, progress);
-    if (summary.usable())
+    if (summary.usable()) {
         lowerAsItPays(model, summary, record, sections, options);
+        lowerAsUnseenTells(model, summary, record, sections, options);
+    }
     return summary;
 }
 
