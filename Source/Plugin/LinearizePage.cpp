@@ -36,6 +36,8 @@ LinearizePage::LinearizePage(Window& window)
         if (const int k = drivers_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryDrivers()[static_cast<std::size_t>(k)];
             window_.use(modelFromText(factory.text, factory.title), "the factory");
+            if (processor_.anyModel().index() != 0 || processor_.model().name != factory.title)  // it was refused
+                showFactory(shownDriver_);
         }
     };
     recipes_.setTextWhenNothingSelected("Recipes");
@@ -95,7 +97,7 @@ void LinearizePage::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
-    drivers_.setSelectedId(0, juce::dontSendNotification);
+    showFactory(0);
     const bool coil = hasCoil(model), moves = givesExcursion(model);
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
@@ -118,6 +120,13 @@ void LinearizePage::showModel(const AnyModel& model)
     resized();
 }
 
+/// @param id  of a factory driver in its list; 0: none of them
+void LinearizePage::showFactory(int id)
+{
+    shownDriver_ = id;
+    drivers_.setSelectedId(id, juce::dontSendNotification);
+}
+
 void LinearizePage::turnOn()
 {
     mode_.follow();
@@ -132,8 +141,7 @@ void LinearizePage::showDriver(const Model& model)
     const auto& drivers = factoryDrivers();
     const auto named = std::find_if(drivers.begin(), drivers.end(),
                                     [&](const auto& factory) { return factory.title == model.name; });
-    drivers_.setSelectedId(named == drivers.end() ? 0 : static_cast<int>(named - drivers.begin()) + 1,
-                           juce::dontSendNotification);
+    showFactory(named == drivers.end() ? 0 : static_cast<int>(named - drivers.begin()) + 1);
     auto plots = effectPlots(model);
     for (auto& plot : plots)
         plot.key = false;
@@ -283,12 +291,16 @@ void LinearizePage::follow()
         dial.second->follow();
     for (auto& one : switches_)
         one->follow();
+    // A list that has been opened is without a choice until one is made; its change may still be on the way.
+    if (drivers_.isDismissed())
+        drivers_.setSelectedId(shownDriver_, juce::dontSendNotification);
     const auto title = words(processor_.parameters().recipe().title);
-    if (recipes_.isPopupActive() || title == recipes_.getText())
+    if (recipes_.isPopupActive() || (title == shownRecipe_ && !recipes_.isDismissed()))
         return;
+    shownRecipe_ = title;
     if (title.isEmpty())
         recipes_.setSelectedId(0, juce::dontSendNotification);
-    else
+    else if (title != recipes_.getText())
         recipes_.setText(title, juce::dontSendNotification);
 }
 

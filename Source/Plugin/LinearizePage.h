@@ -32,6 +32,7 @@ public:
 
 private:
     void showDriver(const Model&);
+    void showFactory(int id);
     void showBox(const PlayedBox&);
     void showFacts();
     void showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
@@ -50,9 +51,22 @@ private:
         {
             setSelectedId(0, juce::dontSendNotification);
             juce::ComboBox::showPopup();
+            opened_ = true;
         }
+        /// Closed, but without a choice; asked once.
+        bool isDismissed()
+        {
+            const bool closed = opened_ && !isPopupActive();
+            opened_ = opened_ && !closed;
+            return closed && getSelectedId() == 0;
+        }
+
+    private:
+        bool opened_ = false;
     };
     Menu drivers_, recipes_;
+    int shownDriver_ = 0;  ///< in the list; 0: none
+    juce::String shownRecipe_;
     juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"};
     ChoiceBox mode_;
     /// each behind its title

@@ -64,7 +64,7 @@ private:
     Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};
-    std::recursive_mutex setting_;             ///< one recipe at a time; a host may set another in its callback
+    std::recursive_mutex setting_;             ///< one recipe at a time; a host may come back in its callback
     int depth_ = 0;                            ///< of such callbacks
     std::atomic<unsigned> beginsAndEnds_ {0};  ///< of recipes that were set; odd while one is
     mutable std::mutex mutex_;                 ///< of what follows; never locked on the audio thread

@@ -261,9 +261,7 @@ int Processor::start()
 
 void Processor::reset()
 {
-    heard_.store(false);
-    for (auto& delay : delays_)
-        delay.reset();
+    heard_.store(false);  // what plays may only be touched where it plays
 }
 
 bool Processor::isBusesLayoutSupported(const BusesLayout& layout) const
@@ -283,13 +281,15 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
         const std::lock_guard lock(mutex_);
         followSwitches();
     }
-    const bool whole = parameters_.read(settings_), first = whole && !heard_.exchange(true),
-               begins = std::exchange(offline_, offline) != offline || first;
+    parameters_.read(settings_);
+    const bool first = !heard_.exchange(true), begins = std::exchange(offline_, offline) != offline || first;
     int faults = 0;
     const std::size_t channels = std::max(channels_.size(), delays_.size());
     for (std::size_t c = 0; c < channels && static_cast<int>(c) < buffer.getNumChannels(); ++c) {
         auto* const channel = channels_.empty() ? nullptr : channels_[c].get();
-        if (channel != nullptr && begins)
+        if (begins && channel == nullptr)
+            delays_[c].reset();
+        if (begins && channel != nullptr)
             channel->jump();
         if (channel != nullptr)
             channel->each([&](ModelChain& chain) {

@@ -41,8 +41,9 @@ std::optional<Gain> gainOf(const Model& higher, const Model& lower, const Record
 
 bool speaksAgainst(const Model& higher, const Model& lower, const Record& record, const FitOptions& options)
 {
-    const auto gain = gainOf(higher, lower, record, validationSections(record), options);
-    return !gain || gain->cost < -gain->price;
+    const auto unseen = validationSections(record);
+    const auto gain = gainOf(higher, lower, record, unseen, options);
+    return gain ? gain->cost < -gain->price : quickSum(lower, record, unseen, options).has_value();
 }
 
 std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
@@ -108,7 +109,7 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
 }
 
 void lowerAsUnseenTells(Model& model, FitSummary& summary, const Record& record,
-                        const std::vector<std::size_t>& sections, FitOptions options)
+                        const std::vector<std::size_t>& sections, FitOptions options, const Progress& progress)
 {
     options.fedGradient = true;  // costs of simulations
     options.substeps = summary.substeps;
@@ -116,23 +117,29 @@ void lowerAsUnseenTells(Model& model, FitSummary& summary, const Record& record,
     const auto leaves = [&](const Model& which, const std::vector<std::size_t>& of) {
         return quickSum(which, record, of, options);
     };
-    constexpr double as = 1.1;  // much more than of what was fitted
+    constexpr double times = 1.1;
     auto seen = leaves(model, sections), unseen = leaves(model, held);
-    while (record.noiseKnown && seen && unseen && model.covariance.size() > 0
-           && unseen->cost / unseen->rows > as * std::max(1.0, seen->cost / seen->rows)) {
+    const auto isLeftWithMore = [&] {  // or runs away
+        return !unseen || unseen->cost / unseen->rows > times * std::max(1.0, seen->cost / seen->rows);
+    };
+    while (record.noiseKnown && seen && model.covariance.size() > 0 && isLeftWithMore()) {
         std::optional<Model> best;
         NormalEquations bestSeen, bestUnseen;
-        double most = 0.0;  // less that both leave
+        double most = unseen ? 0.0 : -std::numeric_limits<double>::infinity();  // less that both leave
         for (std::size_t k = 1; k < model.components.size(); ++k) {
             const auto& component = model.components[k];
             if (!component.effect->law() || component.operatingRange.degree - degreesAtOnce < OperatingRange {}.degree
                 || !std::isfinite(worthOfHighest(model, k)))
                 continue;
+            progress.at(0.0, "");
             auto lower = withLowerLaw(model, k);
-            const auto then = leaves(lower, sections), unseenThen = leaves(lower, held);
-            if (!then || !unseenThen)
+            const auto unseenThen = leaves(lower, held);
+            if (!unseenThen || (unseen && !(unseenThen->cost < unseen->cost)))
                 continue;
-            const double less = unseen->cost - unseenThen->cost + seen->cost - then->cost;
+            const auto then = leaves(lower, sections);
+            if (!then)
+                continue;
+            const double less = (unseen ? unseen->cost : 0.0) - unseenThen->cost + seen->cost - then->cost;
             if (!(less > most))
                 continue;
             most = less;

@@ -34,7 +34,8 @@ Model withLowerLaw(const Model&, std::size_t k, int by = degreesAtOnce);
 void lowerAsItPays(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
 
 /// Lowers laws further in the same way where sections that no fit saw are left with more than those that were fitted,
-/// as long as both together are left with less.
-void lowerAsUnseenTells(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions);
+/// or the model runs away there, as long as both together are left with less.
+void lowerAsUnseenTells(Model&, FitSummary&, const Record&, const std::vector<std::size_t>& sections, FitOptions,
+                        const Progress& = {});
 
 }  // namespace excursion

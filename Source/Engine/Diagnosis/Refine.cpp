@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace excursion {
 
@@ -110,7 +111,10 @@ FitSummary fitWithRoom(Model& model, const Record& record, const std::vector<std
         auto higher = withRoom(model);
         if (canCorrect(model, record, sections) && !canCorrect(higher, record, sections))
             higher = model;
-        for (auto* one : {&higher, &model}) {
+        std::vector<Model*> tries {&model};
+        if (freeParameters(higher).size() > freeParameters(model).size())
+            tries.insert(tries.begin(), &higher);
+        for (auto* one : tries) {
             auto next = run(*one, alongTheFloor, false, true, 0.5, 1.0);
             if (!next.usable())
                 continue;
@@ -139,7 +143,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     auto summary = fitWithRoom(model, record, sections, options, toTheEnd, progress);
     if (summary.usable()) {
         lowerAsItPays(model, summary, record, sections, options);
-        lowerAsUnseenTells(model, summary, record, sections, options);
+        lowerAsUnseenTells(model, summary, record, sections, options, progress.silent());
     }
     return summary;
 }
