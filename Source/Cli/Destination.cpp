@@ -55,6 +55,8 @@ void requireFilePlace(const std::string& file)
         refuse(file, "the name is empty");
     if (fs::is_directory(file, error))
         refuse(file, "it is a folder");
+    if (fs::is_other(file, error))  // such as /dev/null, which is written to itself
+        return;
     requireWritable(file, fs::path(file).parent_path());
 }
 

@@ -143,6 +143,10 @@ void run(ImportArguments options, Terminal& terminal)
         throw Error(Error::Kind::usage,
                     "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file
                         + "' is none.");
+    std::error_code none;
+    if (std::filesystem::equivalent(options.file, options.out, none))
+        throw Error(Error::Kind::usage,
+                    "'" + options.file + "' would be overwritten by what is made of it; give --out another name.");
     auto take = read(options);
     if (auto* spectra = std::get_if<Spectra>(&take))
         return importSpectra(*spectra, options.out, terminal);

@@ -2,6 +2,7 @@
 #include "Cli/Terminal.h"
 
 #include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
 
 #include <algorithm>
 #include <array>
@@ -144,10 +145,14 @@ void Terminal::table(const std::vector<std::string>& header, const std::vector<s
 void Terminal::document(const nlohmann::ordered_json& document)
 {
     clearBar();
-    if (jsonFile == "-")
+    if (jsonFile == "-") {
         std::cout << jsonText(document) << std::flush;
-    else if (!jsonFile.empty())
+        if (!std::cout)
+            throw Error(Error::Kind::input,
+                        "The document cannot be written to the standard output; its disk is full, or nobody reads it.");
+    } else if (!jsonFile.empty()) {
         writeJson(document, jsonFile);
+    }
 }
 
 void Terminal::complain(std::string_view sentence)

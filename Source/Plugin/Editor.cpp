@@ -39,14 +39,15 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     redo_.onClick = [this] { redo(); };
     view_.onClick = [this] { showView(); };
     view_.setTitle("View: scale, theme, keys");
-    cancel_.onClick = [this] {
-        owner_.session().cancel();
-        if (owner_.rehearsing().status().busy) {
+    cancel_.onClick = [this] {  // what is shown, and nothing else
+        if (owner_.session().status().busy) {
+            owner_.session().cancel();
+        } else if (owner_.rehearsing().status().busy) {
             owner_.rehearsing().cancel();
             tell("Cancelled.", false);
-        }
-        if (auto* measuring = measure_.measuring())
+        } else if (auto* measuring = measure_.measuring()) {
             measuring->cancel();
+        }
     };
     add(undo_, "Ctrl+Z");
     add(redo_, "Ctrl+Shift+Z");
@@ -116,9 +117,16 @@ void Editor::update()
 {
     const auto status = owner_.session().status();
     const auto rehearsal = owner_.rehearsing().status();
-    fraction_ = status.busy ? status.fraction : rehearsal.fraction;
-    progress_.setVisible(status.busy || rehearsal.busy);
-    cancel_.setVisible(status.busy || rehearsal.busy);
+    auto* measuring = measure_.measuring();
+    if (measuring != nullptr && measuring->running() && pages_[page_] != &measure_)
+        measuring->tick();  // it goes on, whatever page is seen
+    const bool measures = measuring != nullptr && measuring->running(),
+               busy = status.busy || rehearsal.busy || measures;
+    fraction_ = status.busy                   ? status.fraction
+                : rehearsal.busy || !measures ? rehearsal.fraction
+                                              : measuring->fraction();
+    progress_.setVisible(busy);
+    cancel_.setVisible(busy);
     if (status.words != said_) {
         said_ = status.words;
         tell(words(said_), status.trouble);

@@ -118,10 +118,10 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
     save_.onClick = [this] {
         chooser_ = std::make_unique<juce::FileChooser>(
             "Save the take as a folder",
-            juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take"));
+            juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take").getNonexistentSibling());
         chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
             if (chosen.getResult() != juce::File())
-                session().saveTake(chosen.getResult().getFullPathName().toStdString());
+                save(chosen.getResult());
         });
     };
     add({&openTitle_, &open_, &folder_, &openHint_, &virtualTitle_, &driver_, &seed_, &draw_, &measuringTitle_});
@@ -160,6 +160,14 @@ void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
     report_.moveCaretToTop(false);
     signal_.show(signalPlot(findings.report));
     save_.setEnabled(!spectra);
+}
+
+void MeasurePage::save(const juce::File& folder)
+{
+    if (folder.getChildFile("measurement.json").exists())
+        window_.tell("\"" + folder.getFileName() + "\" holds a take already: choose another name.", true);
+    else
+        session().saveTake(folder.getFullPathName().toStdString());
 }
 
 void MeasurePage::tick()

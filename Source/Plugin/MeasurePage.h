@@ -23,7 +23,8 @@ public:
     void resized() override;
 
     MeasuringPanel* measuring() { return measuring_.get(); }
-    void choose();  ///< asks for a take
+    void choose();                 ///< asks for a take
+    void save(const juce::File&);  ///< the take as a folder, unless that holds one
 
 private:
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;

@@ -24,6 +24,15 @@ double entered(const juce::String& field, const char* what)
     return value;
 }
 
+/// Where a device's channel stands among those that are open, which alone are recorded and played.
+int placeAmong(const juce::BigInteger& open, int channel, const std::string& what, juce::AudioIODevice& device)
+{
+    if (!open[channel])
+        throw Error(Error::Kind::usage, what + " " + std::to_string(channel + 1) + " is not open on "
+                                            + device.getName().toStdString() + ": tick it under Audio device.");
+    return open.getBitRange(0, channel).countNumberOfSetBits();
+}
+
 double rateOf(juce::AudioDeviceManager& devices)
 {
     auto* device = devices.getCurrentAudioDevice();
@@ -125,9 +134,10 @@ ExcitationPlanOptions MeasuringPanel::planOptions() const
     options.periods = periods;
     options.realizations = realizations;
     options.levels.clear();
-    for (const auto& level : juce::StringArray::fromTokens(levels_.getText(), " ,;", ""))
+    // A comma within a number is refused, as it may be a decimal one: "1,5" is not 1 V and then 5 V.
+    for (const auto& level : juce::StringArray::fromTokens(levels_.getText(), " ;", ""))
         if (level.isNotEmpty())
-            options.levels.push_back(entered(level, "level"));
+            options.levels.push_back(entered(level.trimCharactersAtEnd(","), "level"));
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The excitation cannot be played: " + reason + ".");
@@ -183,18 +193,20 @@ void MeasuringPanel::start()
             if (std::abs(volts) > fullScale)
                 throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the "
                                                 "levels or turn up the amplifier.");
-        const auto wanted = roles();
+        auto wanted = roles();
         bool voltage = false;
-        for (const auto& role : wanted) {
+        for (auto& role : wanted) {
             voltage = voltage || role.quantity == Quantity::voltage;
-            if (role.input >= device->getActiveInputChannels().countNumberOfSetBits())
-                throw Error(Error::Kind::usage, "The device has no input " + std::to_string(role.input + 1) + ".");
+            role.input = placeAmong(device->getActiveInputChannels(), role.input, "Input", *device);
         }
+        const int output = placeAmong(device->getActiveOutputChannels(), outputChannel_.getSelectedId() - 1, "Output",
+                                      *device);
         if (!voltage || wanted.size() < 2)
             throw Error(
                 Error::Kind::usage,
                 "Choose an input for the voltage at the terminals and at least one other, such as the current.");
-        recorder_ = std::make_unique<Recorder>(std::move(plan), wanted, outputChannel_.getSelectedId() - 1, fullScale);
+        recorder_ = std::make_unique<Recorder>(std::move(plan), wanted, output, fullScale);
+        seen_ = -1.0;
         window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
         devices_.addAudioCallback(recorder_.get());
         go_.setButtonText("Stop");
@@ -210,6 +222,7 @@ void MeasuringPanel::end()
     devices_.removeAudioCallback(recorder_.get());
     window_.processor().suspendProcessing(false);
     go_.setButtonText("Start measuring");
+    preview();
 }
 
 void MeasuringPanel::cancel()
@@ -231,6 +244,18 @@ void MeasuringPanel::tick()
                         juce::dontSendNotification);
     if (!recorder_)
         return;
+    const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes();
+    if (recorder_->fraction() != seen_) {
+        seen_ = recorder_->fraction();
+        movedAt_ = now;
+    }
+    if (!recorder_->broken() && !recorder_->finished() && now - movedAt_ > patience) {
+        // Some drivers stop without a word when a device is unplugged.
+        end();
+        recorder_ = nullptr;
+        window_.tell("The audio device delivers no sound any more: choose it again, and measure again.", true);
+        return;
+    }
     if (recorder_->broken()) {
         end();
         recorder_ = nullptr;

@@ -28,8 +28,10 @@ public:
     void cancel();
     void tick();
     bool running() const { return recorder_ != nullptr; }
+    double fraction() const { return recorder_ ? recorder_->fraction() : 0.0; }  ///< of a measurement that runs
 
     void setRole(int input, Quantity, double fullScale);
+    void setOutput(int channel) { outputChannel_.setSelectedId(channel, juce::dontSendNotification); }  ///< from 1
     void setLevels(const juce::String& text) { levels_.setText(text); }
     void setBand(double low, double high);  ///< Hz
 
@@ -37,6 +39,7 @@ public:
 
 private:
     static constexpr int inputs = 4;
+    static constexpr double patience = 4.0;  ///< s without a block
     struct Input {
         juce::Label title;
         juce::ComboBox role;
@@ -58,6 +61,7 @@ private:
     juce::TextEditor levels_, low_, high_, fullScale_;
     juce::ComboBox outputChannel_;
     std::unique_ptr<Recorder> recorder_;
+    double seen_ = 0.0, movedAt_ = 0.0;  ///< the last fraction, and when it came, s
 };
 
 }  // namespace excursion::plugin

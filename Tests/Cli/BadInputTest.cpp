@@ -252,6 +252,51 @@ TEST_CASE("A place that cannot be written to is told before the work", "[cli][ba
     refusedWith(3, {"compare", take, "--model", file}, scratch, "permission");
 }
 
+TEST_CASE("What is no file is written to and stays what it is, and a full disk is told", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto model = Chain::get().model();
+    if (!fs::is_character_file("/dev/full")) {
+        WARN("skipped: there is no /dev/full");
+        return;
+    }
+    CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=/dev/null"}).code == 0);
+    CHECK(fs::is_character_file("/dev/null"));
+    const auto full = runProgram(scratch.folder(), {"parameters", model, "--json=/dev/full"});
+    CHECK(full.code == 3);
+    CHECK(full.err.find("'/dev/full' cannot be written") != std::string::npos);
+    CHECK(fs::is_character_file("/dev/full"));
+    // A link leads to where the document goes, and stays.
+    const auto real = scratch.file("real.json", "{}"), link = scratch / "link.json";
+    fs::create_symlink(real, link);
+    CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + link.string()}).code == 0);
+    CHECK(fs::is_symlink(link));
+    CHECK(bytesOf(real.string()).size() > 100);
+}
+
+TEST_CASE("A document that is nested without end is refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const std::string deep(500000, '['), end(500000, ']');
+    for (const auto& text : {"{\"format\": " + deep + end + "}", deep + end}) {
+        const auto file = scratch.file("deep.json", text).string();
+        refusedWith(3, {"check", file}, scratch, "nested");
+        refusedWith(3, {"parameters", file}, scratch, "nested");
+    }
+    const auto flat = scratch.file("flat.json", R"({"format": [[1], [2]]})").string();
+    refusedWith(3, {"parameters", flat}, scratch, "a long array");
+}
+
+TEST_CASE("Samples beyond any measurement are refused, however they came to be", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = copyOfTake(scratch);
+    editJson(take + "/measurement.json", [](auto& document) { document["channels"][1]["fullScale"] = 1e150; });
+    takeRefused(3, take, scratch, "beyond any measurement");
+    const auto text = scratch.file("t.csv", "voltage,current\n1,1\n2,1\n").string();
+    refusedWith(2, {"import", text, "--rate", "48000", "--out", text}, scratch, "would be overwritten");
+}
+
 TEST_CASE("Effects that do not exist or do not suit are refused before the work", "[cli][bad-input]")
 {
     const Scratch scratch;

@@ -277,6 +277,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
     REQUIRE(panel.running());
     CHECK(processor.isSuspended());
     picture(editor, "measuring");
+    editor.go(PageName::compare);  // it goes on, whatever page is seen
     for (int k = 0; k < 2000 && panel.running(); ++k) {
         editor.update();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -302,6 +303,49 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         CHECK(!panel.running());
         CHECK(!processor.isSuspended());
     }
+    SECTION("a channel is played where it is among those that are open")
+    {
+        plugin::VirtualDevice::firstOutput = 2;
+        editor.go(PageName::measure);
+        panel.setOutput(3);
+        click(editor, "Start measuring");
+        CHECK(panel.running());
+        for (int k = 0; k < 2000 && panel.running(); ++k) {
+            editor.update();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        settle(editor);
+        plugin::VirtualDevice::firstOutput = 0;
+        REQUIRE(processor.session().findings());
+        CHECK(processor.session().findings()->report.fitForUse());
+    }
+    SECTION("a device that is gone without a word ends the measurement")
+    {
+        editor.go(PageName::measure);
+        click(editor, "Start measuring");
+        REQUIRE(panel.running());
+        plugin::VirtualDevice::gone = true;
+        for (int k = 0; k < 400 && panel.running(); ++k) {
+            editor.update();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        plugin::VirtualDevice::gone = false;
+        CHECK(!panel.running());
+        CHECK(!processor.isSuspended());
+        CHECK(editor.status().contains("no sound any more"));
+    }
+    SECTION("a take is not written over another")
+    {
+        const auto folder = juce::File::createTempFile("take");
+        REQUIRE(folder.createDirectory());
+        REQUIRE(folder.getChildFile("measurement.json").replaceWithText("mine"));
+        editor.measure().save(folder);
+        editor.update();
+        CHECK(editor.status().contains("holds a take already"));
+        processor.session().wait();
+        CHECK(folder.getChildFile("measurement.json").loadFileAsString() == "mine");
+        folder.deleteRecursively();
+    }
     SECTION("what makes no sense is refused in a sentence")
     {
         editor.go(PageName::measure);
@@ -312,6 +356,16 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         panel.setLevels("9");
         click(editor, "Start measuring");
         CHECK(!panel.running());
+        panel.setLevels("0.5 1,5");
+        click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("1,5"));
+        panel.setOutput(5);
+        panel.setLevels("0.5 1");
+        click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("Output 5 is not open"));
+        panel.setOutput(1);
         panel.setLevels("1");
         panel.setRole(2, Quantity::current, 1.0);
         click(editor, "Start measuring");

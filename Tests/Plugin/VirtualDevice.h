@@ -15,6 +15,11 @@ namespace excursion::plugin {
 /// A) and displacement (8 mm). It runs as fast as it can.
 class VirtualDevice : public juce::AudioIODevice {
 public:
+    /// As when it is unplugged and its driver says nothing.
+    inline static std::atomic<bool> gone {false};
+    /// The first of its two open outputs.
+    inline static std::atomic<int> firstOutput {0};
+
     VirtualDevice() : AudioIODevice("Virtual loudspeaker", "Virtual") {}
     ~VirtualDevice() override { close(); }
 
@@ -53,16 +58,16 @@ public:
     int getCurrentBufferSizeSamples() override { return 256; }
     double getCurrentSampleRate() override { return 48000.0; }
     int getCurrentBitDepth() override { return 32; }
-    juce::BigInteger getActiveOutputChannels() const override { return bits(2); }
-    juce::BigInteger getActiveInputChannels() const override { return bits(3); }
+    juce::BigInteger getActiveOutputChannels() const override { return bits(firstOutput, 2); }
+    juce::BigInteger getActiveInputChannels() const override { return bits(0, 3); }
     int getOutputLatencyInSamples() override { return 0; }
     int getInputLatencyInSamples() override { return 0; }
 
 private:
-    static juce::BigInteger bits(int count)
+    static juce::BigInteger bits(int first, int count)
     {
         juce::BigInteger result;
-        result.setRange(0, count, true);
+        result.setRange(first, count, true);
         return result;
     }
 
@@ -75,7 +80,7 @@ private:
             channel.assign(256, 0.0f);
         for (auto& channel : out)
             channel.assign(256, 0.0f);
-        while (!stop.stop_requested()) {
+        while (!stop.stop_requested() && !gone) {
             const float* const ins[] {in[0].data(), in[1].data(), in[2].data()};
             float* const outs[] {out[0].data(), out[1].data()};
             callback_->audioDeviceIOCallbackWithContext(ins, 3, outs, 2, 256, {});

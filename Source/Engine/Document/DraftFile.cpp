@@ -19,10 +19,17 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-DraftFile::DraftFile(fs::path target) : target_(std::move(target)), draft_(target_)
+DraftFile::DraftFile(fs::path target) : target_(std::move(target))
 {
-    draft_ += ".tmp";
     std::error_code error;
+    // A link stays one, and what is no file (/dev/null, a pipe) is written to, not replaced.
+    if (const auto real = fs::canonical(target_, error); !error)
+        target_ = real;
+    error.clear();
+    draft_ = target_;
+    if (!fs::is_other(target_, error))
+        draft_ += ".tmp";
+    error.clear();
     if (fs::is_directory(target_, error))
         cannotWrite(target_, "it is a folder");
     if (const auto folder = target_.parent_path(); !folder.empty()) {
@@ -36,7 +43,8 @@ DraftFile::DraftFile(fs::path target) : target_(std::move(target)), draft_(targe
 DraftFile::~DraftFile()
 {
     std::error_code ignored;
-    fs::remove(draft_, ignored);
+    if (draft_ != target_)
+        fs::remove(draft_, ignored);
 }
 
 void DraftFile::write(std::string_view bytes)
@@ -51,7 +59,8 @@ void DraftFile::write(std::string_view bytes)
 void DraftFile::publish()
 {
     std::error_code error;
-    fs::rename(draft_, target_, error);
+    if (draft_ != target_)
+        fs::rename(draft_, target_, error);
     if (error)
         cannotWrite(target_, error.message());
 }

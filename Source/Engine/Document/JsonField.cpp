@@ -29,8 +29,13 @@ JsonField::JsonField(const nlohmann::json& value, std::string path, std::string 
 
 void JsonField::refuse(const std::string& expected) const
 {
-    auto found = value_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    if (found.size() > 60)
+    constexpr std::size_t most = 60;  // characters, and so many items at least
+    const bool deep = value_.is_structured()
+                      && (value_.size() > most || std::any_of(value_.begin(), value_.end(), [](const auto& v) {
+                              return v.is_structured();
+                          }));
+    auto found = deep ? std::string() : value_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    if (deep || found.size() > most)
         found = "a long " + std::string(value_.type_name());
     const auto what = path_.empty() ? std::string("the document") : "field '" + path_ + "'";
     throw Error(Error::Kind::input, "'" + source_ + "': " + what + " is " + found + ", expected " + expected + ".");
@@ -145,9 +150,29 @@ std::string JsonField::oneOf(const std::vector<std::string>& known) const
     refuse(list);
 }
 
+void requireShallow(std::string_view text, const std::string& source)
+{
+    constexpr int deepest = 200;  // far more than any document has, far less than a stack holds
+    int depth = 0;
+    bool inText = false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if (inText && c == '\\')
+            ++k;
+        else if (c == '"')
+            inText = !inText;
+        else if (!inText && (c == '[' || c == '{') && ++depth > deepest)
+            throw Error(Error::Kind::input, "'" + source + "' is not a document of ours: it is nested more than "
+                                                + std::to_string(deepest) + " deep.");
+        else if (!inText && (c == ']' || c == '}'))
+            --depth;
+    }
+}
+
 nlohmann::json readJson(const std::filesystem::path& path)
 {
     const auto text = readText(path);
+    requireShallow(text, path.string());
     try {
         return nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception& e) {  // its text names line and column

@@ -48,6 +48,9 @@ private:
     std::string path_, source_;
 };
 
+/// Throws Error (input) for a JSON text that is nested deeper than any document: reading it would exhaust the stack.
+void requireShallow(std::string_view text, const std::string& source);
+
 /// Parses a file that must hold one JSON object; throws Error (input).
 nlohmann::json readJson(const std::filesystem::path&);
 

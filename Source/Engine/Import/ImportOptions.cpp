@@ -4,6 +4,7 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Take/ExcitationPlan.h"
 #include "Engine/Take/Units.h"
 
@@ -191,10 +192,7 @@ Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns,
                                                : 0.0;
         for (double& value : channel.samples)
             value = (value - mean) * scale->factor;
-        constexpr double largest = 1e100, smallest = 1e-100;  // beyond them squares of samples would be
-        const auto peak = std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0,
-                                          [](double most, double value) { return std::max(most, std::abs(value)); });
-        if (!(peak < largest) || (peak > 0.0 && peak < smallest))
+        if (!isMeasurable(channel.samples))
             refuse(Error::Kind::input, "has samples in '" + column
                                            + "' that are beyond any measurement; it is damaged, or in another unit.");
         channel.fullScale = roundFullScale(channel.samples, 1.1);

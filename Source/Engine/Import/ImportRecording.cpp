@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Import/RecordingAssembly.h"
+#include "Engine/Signal/Level.h"
 
 #include <cmath>
 
@@ -56,6 +57,11 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
                                x.begin() + static_cast<std::ptrdiff_t>(to));
         for (double& value : channel.samples)
             value *= a.factor;
+        if (!isMeasurable(channel.samples))
+            throw Error(Error::Kind::input, "'" + source.path.string() + "' has samples for the "
+                                                + std::string(name(*a.quantity))
+                                                + " that are beyond any measurement; it is damaged, or in another "
+                                                  "unit.");
         result.take.channels.push_back(std::move(channel));
     }
     result.take.input();

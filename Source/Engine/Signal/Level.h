@@ -16,6 +16,15 @@ inline double peakOf(std::span<const double> samples)
     return peak;
 }
 
+/// Whether samples can be those of a measurement, whose squares are numbers: all finite, and their peak zero or between
+/// 1e-100 and 1e100.
+inline bool isMeasurable(std::span<const double> samples)
+{
+    const double peak = peakOf(samples);
+    return std::all_of(samples.begin(), samples.end(), [](double s) { return std::isfinite(s); })
+           && (peak == 0.0 || (peak > 1e-100 && peak < 1e100));
+}
+
 /// Root of the mean square of a record, 0 of an empty one.
 inline double rmsOf(std::span<const double> samples)
 {

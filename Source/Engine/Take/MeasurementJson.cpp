@@ -204,6 +204,7 @@ Quantity quantityFromJson(const JsonField& field)
 
 MeasurementHeader parseMeasurementJson(std::string_view text, const std::string& source)
 {
+    requireShallow(text, source);
     Json document;
     try {
         document = Json::parse(text);

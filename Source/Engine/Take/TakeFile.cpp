@@ -4,6 +4,7 @@
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Take/MeasurementJson.h"
 #include "Engine/Take/WavFile.h"
 
@@ -148,6 +149,10 @@ SweepTake readOwnTake(const fs::path& json)
         channel.samples = std::move(wav.channels[c]);
         for (double& value : channel.samples)
             value *= channel.fullScale;
+        if (!isMeasurable(channel.samples))
+            throw Error(Error::Kind::input, "'" + json.string() + "': the " + std::string(name(channel.quantity))
+                                                + " channel is beyond any measurement; its samples or its full scale "
+                                                  "are damaged.");
     }
     try {
         measurement.input();
