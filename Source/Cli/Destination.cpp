@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
 
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Error.h"
 
 #include <cctype>
@@ -55,9 +56,9 @@ void requireFilePlace(const std::string& file)
         refuse(file, "the name is empty");
     if (fs::is_directory(file, error))
         refuse(file, "it is a folder");
-    if (fs::is_other(file, error))  // such as /dev/null, which is written to itself
+    if (isNoFile(file))
         return;
-    requireWritable(file, fs::path(file).parent_path());
+    requireWritable(file, behindLinks(file).parent_path());
 }
 
 void requireFolderPlace(const std::string& folder)

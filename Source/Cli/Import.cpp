@@ -122,9 +122,24 @@ Take read(const ImportArguments& options)
     return readTake(options.file);
 }
 
+/// What is imported is not to be replaced by what is made of it.
+void requireOtherPlace(const ImportArguments& options)
+{
+    const std::filesystem::path out = options.out;
+    std::error_code none;
+    for (const auto& file : options.files)
+        for (const auto& read : {std::filesystem::path(file), std::filesystem::path(file) / "measurement.json"})
+            for (const auto& written : {out, out / "measurement.json", out / "take.wav"})
+                if (std::filesystem::equivalent(read, written, none))
+                    throw Error(Error::Kind::usage, "'" + file
+                                                        + "' would be overwritten by what is made of it; give "
+                                                          "--out another name.");
+}
+
 void run(ImportArguments options, Terminal& terminal)
 {
     options.file = options.files.front();
+    requireOtherPlace(options);
     if (isRecording(options.file)) {
         options.recording.files = options.files;
         options.recording.map = options.map;
@@ -143,10 +158,6 @@ void run(ImportArguments options, Terminal& terminal)
         throw Error(Error::Kind::usage,
                     "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file
                         + "' is none.");
-    std::error_code none;
-    if (std::filesystem::equivalent(options.file, options.out, none))
-        throw Error(Error::Kind::usage,
-                    "'" + options.file + "' would be overwritten by what is made of it; give --out another name.");
     auto take = read(options);
     if (auto* spectra = std::get_if<Spectra>(&take))
         return importSpectra(*spectra, options.out, terminal);

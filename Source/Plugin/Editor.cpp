@@ -39,14 +39,15 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     redo_.onClick = [this] { redo(); };
     view_.onClick = [this] { showView(); };
     view_.setTitle("View: scale, theme, keys");
-    cancel_.onClick = [this] {  // what is shown, and nothing else
-        if (owner_.session().status().busy) {
-            owner_.session().cancel();
-        } else if (owner_.rehearsing().status().busy) {
+    cancel_.onClick = [this] {  // what is shown; what sounds comes first
+        if (auto* measuring = measure_.measuring(); measuring != nullptr && measuring->running()) {
+            measuring->cancel();
+            return;
+        }
+        owner_.session().cancel();
+        if (owner_.rehearsing().status().busy) {
             owner_.rehearsing().cancel();
             tell("Cancelled.", false);
-        } else if (auto* measuring = measure_.measuring()) {
-            measuring->cancel();
         }
     };
     add(undo_, "Ctrl+Z");
@@ -122,9 +123,7 @@ void Editor::update()
         measuring->tick();  // it goes on, whatever page is seen
     const bool measures = measuring != nullptr && measuring->running(),
                busy = status.busy || rehearsal.busy || measures;
-    fraction_ = status.busy                   ? status.fraction
-                : rehearsal.busy || !measures ? rehearsal.fraction
-                                              : measuring->fraction();
+    fraction_ = measures ? measuring->fraction() : status.busy ? status.fraction : rehearsal.fraction;
     progress_.setVisible(busy);
     cancel_.setVisible(busy);
     if (status.words != said_) {

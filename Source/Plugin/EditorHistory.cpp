@@ -125,6 +125,7 @@ void Editor::useFile(const juce::File& file)
     const auto path = file.getFullPathName().toStdString();
     try {
         const auto text = file.loadFileAsString().toStdString();
+        requireShallow(text, path);
         if (!holdsBox(text)) {
             use(readModel(path), file.getFileName());
             return;

@@ -136,8 +136,8 @@ ExcitationPlanOptions MeasuringPanel::planOptions() const
     options.levels.clear();
     // A comma within a number is refused, as it may be a decimal one: "1,5" is not 1 V and then 5 V.
     for (const auto& level : juce::StringArray::fromTokens(levels_.getText(), " ;", ""))
-        if (level.isNotEmpty())
-            options.levels.push_back(entered(level.trimCharactersAtEnd(","), "level"));
+        if (const auto number = level.trimCharactersAtEnd(","); number.isNotEmpty())
+            options.levels.push_back(entered(number, "level"));
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The excitation cannot be played: " + reason + ".");
@@ -260,6 +260,9 @@ void MeasuringPanel::tick()
         end();
         recorder_ = nullptr;
         window_.tell("The audio device stopped or changed its rate: measure again.", true);
+    } else if (recorder_->finished() && window_.processor().session().status().busy) {
+        // A fit that is under way is not to end for it.
+        preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
     } else if (recorder_->finished()) {
         end();
         const auto done = std::exchange(recorder_, nullptr);

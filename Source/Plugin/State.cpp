@@ -19,6 +19,7 @@ constexpr DocumentFormat stateFormat {"excursion-plugin-state"};
 
 nlohmann::json parsed(std::string_view text, const std::string& where)
 {
+    requireShallow(text, where);
     auto document = nlohmann::json::parse(text, nullptr, false);
     if (!document.is_object())
         throw Error(Error::Kind::input, "'" + where + "' is no JSON document: give one that Excursion has written.");

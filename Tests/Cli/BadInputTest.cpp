@@ -272,6 +272,11 @@ TEST_CASE("What is no file is written to and stays what it is, and a full disk i
     CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + link.string()}).code == 0);
     CHECK(fs::is_symlink(link));
     CHECK(bytesOf(real.string()).size() > 100);
+    const auto dangling = scratch / "dangling.json";
+    fs::create_symlink("later.json", dangling);
+    CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + dangling.string()}).code == 0);
+    CHECK(fs::is_symlink(dangling));
+    CHECK(bytesOf((scratch / "later.json").string()) == bytesOf(real.string()));
 }
 
 TEST_CASE("A document that is nested without end is refused", "[cli][bad-input]")
@@ -295,6 +300,10 @@ TEST_CASE("Samples beyond any measurement are refused, however they came to be",
     takeRefused(3, take, scratch, "beyond any measurement");
     const auto text = scratch.file("t.csv", "voltage,current\n1,1\n2,1\n").string();
     refusedWith(2, {"import", text, "--rate", "48000", "--out", text}, scratch, "would be overwritten");
+    refusedWith(2, {"import", take, "--out", take}, scratch, "would be overwritten");
+    refusedWith(2, {"import", take + "/measurement.json", "--out", take}, scratch, "would be overwritten");
+    refusedWith(2, {"import", take + "/take.wav", "--map", "1=voltage:1", "--out", take}, scratch,
+                "would be overwritten");
 }
 
 TEST_CASE("Effects that do not exist or do not suit are refused before the work", "[cli][bad-input]")

@@ -305,7 +305,11 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
     }
     SECTION("a channel is played where it is among those that are open")
     {
-        plugin::VirtualDevice::firstOutput = 2;
+        const auto first = processor.session().findings();
+        struct Outputs {
+            Outputs() { plugin::VirtualDevice::firstOutput = 2; }
+            ~Outputs() { plugin::VirtualDevice::firstOutput = 0; }
+        } const outputs;
         editor.go(PageName::measure);
         panel.setOutput(3);
         click(editor, "Start measuring");
@@ -314,9 +318,9 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
             editor.update();
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
+        REQUIRE(!panel.running());
         settle(editor);
-        plugin::VirtualDevice::firstOutput = 0;
-        REQUIRE(processor.session().findings());
+        REQUIRE(processor.session().findings() != first);
         CHECK(processor.session().findings()->report.fitForUse());
     }
     SECTION("a device that is gone without a word ends the measurement")

@@ -19,17 +19,30 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-DraftFile::DraftFile(fs::path target) : target_(std::move(target))
+fs::path behindLinks(fs::path target)
+{
+    constexpr int mostLinks = 40;  // as the system has it
+    std::error_code error;
+    for (int n = 0; n < mostLinks && fs::is_symlink(target, error); ++n)
+        target = target.parent_path() / fs::read_symlink(target, error);
+    return target;
+}
+
+bool isNoFile(const fs::path& target)
 {
     std::error_code error;
-    // A link stays one, and what is no file (/dev/null, a pipe) is written to, not replaced.
-    if (const auto real = fs::canonical(target_, error); !error)
-        target_ = real;
-    error.clear();
+    const auto text = target.generic_string();
+    const bool ofSystem = text.starts_with("/dev/") || text.starts_with("/proc/");
+    return fs::is_other(target, error)
+           || (ofSystem && fs::is_symlink(target, error));  // /dev/stdout is a link to whatever it is
+}
+
+DraftFile::DraftFile(fs::path target) : target_(isNoFile(target) ? std::move(target) : behindLinks(std::move(target)))
+{
     draft_ = target_;
-    if (!fs::is_other(target_, error))
+    if (!isNoFile(target_))
         draft_ += ".tmp";
-    error.clear();
+    std::error_code error;
     if (fs::is_directory(target_, error))
         cannotWrite(target_, "it is a folder");
     if (const auto folder = target_.parent_path(); !folder.empty()) {
@@ -49,7 +62,7 @@ DraftFile::~DraftFile()
 
 void DraftFile::write(std::string_view bytes)
 {
-    std::ofstream file(draft_, std::ios::binary | std::ios::trunc);
+    std::ofstream file(draft_, std::ios::binary | (draft_ == target_ ? std::ios::app : std::ios::trunc));
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (!file)

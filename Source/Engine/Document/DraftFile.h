@@ -6,6 +6,11 @@
 
 namespace excursion {
 
+/// Where a document for this target goes: links lead on, and stay.
+std::filesystem::path behindLinks(std::filesystem::path target);
+/// What is written to and never replaced: a pipe, a device, /dev/stdout.
+bool isNoFile(const std::filesystem::path& target);
+
 /// A file that is written beside its place ("name.tmp") and put there whole by publish(). Until then
 /// what stood there stays; a draft that is never published leaves nothing behind.
 class DraftFile {

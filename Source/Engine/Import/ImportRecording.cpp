@@ -57,11 +57,6 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
                                x.begin() + static_cast<std::ptrdiff_t>(to));
         for (double& value : channel.samples)
             value *= a.factor;
-        if (!isMeasurable(channel.samples))
-            throw Error(Error::Kind::input, "'" + source.path.string() + "' has samples for the "
-                                                + std::string(name(*a.quantity))
-                                                + " that are beyond any measurement; it is damaged, or in another "
-                                                  "unit.");
         result.take.channels.push_back(std::move(channel));
     }
     result.take.input();
@@ -85,9 +80,14 @@ ImportedRecording importRecording(const RecordingOptions& options, const Progres
     const auto assigned = assignChannels(options, shapesOf(sources));
     for (const auto& a : assigned)
         requireFinite(sources[a.file].sound, a.channel, sources[a.file].path);
-    if (!options.plan)
-        return asRecorded(options, sources, assigned);
-    return assembleRecording(options, sources, assigned, progress);
+    auto imported = options.plan ? assembleRecording(options, sources, assigned, progress)
+                                 : asRecorded(options, sources, assigned);
+    for (const auto& channel : imported.take.channels)
+        if (!isMeasurable(channel.samples))
+            throw Error(Error::Kind::input, "The recording has samples for the " + std::string(name(channel.quantity))
+                                                + " that are beyond any measurement; it is damaged, or in another "
+                                                  "unit.");
+    return imported;
 }
 
 }  // namespace excursion
