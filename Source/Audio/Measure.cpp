@@ -15,6 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto pollEvery = std::chrono::milliseconds(10);
+constexpr double stopPatience = 0.5;  // s for the fade
 constexpr auto reportEvery = std::chrono::milliseconds(100);
 
 std::string inputText(const WatchedInput& watched)
@@ -61,13 +62,14 @@ public:
             procedure_.readRecorded(channels);
             if (options.stop.stop_requested())
                 procedure_.stop();
+            const double patience = options.stop.stop_requested() ? std::min(options.patience, stopPatience)
+                                                                  : options.patience;
             const auto now = Clock::now();
             if (const auto present = procedure_.frames(); present != frames) {
                 frames = present;
                 moved = now;
             }
-            if (!procedure_.ended()
-                && (!stream_.running() || now - moved > std::chrono::duration<double>(options.patience)))
+            if (!procedure_.ended() && (!stream_.running() || now - moved > std::chrono::duration<double>(patience)))
                 return false;
             if (options.report && now - reported >= reportEvery) {
                 reported = now;
@@ -104,7 +106,7 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
         const auto unit = std::string(siUnit(*watched.quantity));
         return "The " + quantity + " reached " + figure(ending.value, "%.4g") + " " + unit + " " + momentOf(ending)
                + ", beyond its limit of " + figure(watched.limit.value(), "%.4g") + " " + unit
-               + "; take lower levels (excursion excite --levels) or another --limit.";
+               + "; take lower levels or another limit.";
     }
     case Ending::Kind::clipping:
         return "The " + inputText(watched) + " clips " + momentOf(ending)
@@ -112,7 +114,7 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
     case Ending::Kind::unheard:
         return "Nothing of what is played arrives at the inputs, though the rise has come to "
                + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
-               + " dB below full level: look at the amplifier, the cables, --output and --map.";
+               + " dB below full level: look at the amplifier, the cables, and which output and inputs are used.";
     case Ending::Kind::frozen:
         return "No input has moved any more from " + figure(ending.seconds, "%.1f")
                + " s of the plan on: the device has lost its connection, or its cables have.";
@@ -125,18 +127,26 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
     return "";
 }
 
-std::size_t loudestPeriod(const Excitation& e, const std::vector<double>& samples)
+ProcedureOptions procedureFor(const Measurement& plan, std::size_t period, double fullScale)
 {
-    const auto N = static_cast<std::size_t>(e.period);
-    std::size_t place = 0;
-    double peak = -1.0;
-    for (std::size_t begin = 0; begin + N <= samples.size(); begin += N)
-        for (std::size_t n = begin; n < begin + N; ++n)
-            if (std::abs(samples[n]) > peak) {
-                peak = std::abs(samples[n]);
-                place = begin;
-            }
-    return place;
+    ProcedureOptions options;
+    options.sampleRate = plan.sampleRate;
+    const auto& volts = plan.input().samples;
+    options.loudLength = period;
+    double peak = 0.0;
+    for (std::size_t n = 0; n < volts.size(); ++n) {
+        options.sound.push_back(static_cast<float>(volts[n] / fullScale));
+        if (std::abs(volts[n]) > peak) {
+            peak = std::abs(volts[n]);
+            options.loudBegin = std::min(n / options.loudLength * options.loudLength,
+                                         volts.size() - std::min(options.loudLength, volts.size()));
+        }
+    }
+    if (!(peak <= fullScale) || !(peak > 0.0))
+        throw Error(Error::Kind::data, "The plan peaks at " + figure(peak / fullScale, "%.4g")
+                                           + " of the output's full scale; what can be played has more than 0 and at "
+                                             "most 1.");
+    return options;
 }
 
 Measured measure(System& system, const Device& device, const MeasureOptions& options)
@@ -145,8 +155,9 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
     std::string lost;
     for (int attempt = 1;; ++attempt) {
         if (attempt > options.attempts)
-            throw Error(Error::Kind::input, lost + " It was so in " + std::to_string(options.attempts)
-                                                + " attempts: close other programs, or ask for more --latency.");
+            throw Error(Error::Kind::input,
+                        lost + " It was so in " + std::to_string(options.attempts)
+                            + " attempts: close other programs, or let the device have more latency.");
         auto procedureOptions = options.procedure;
         if (attempt > 1)
             procedureOptions.rise = 0.0;  // the limits have been met, or not, by the first attempt

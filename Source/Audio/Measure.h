@@ -37,7 +37,7 @@ struct Measured {
 
 /// Plays and records through a device, and once more, without the rise, where samples were lost on the way. The device
 /// is closed when it returns, or throws
-///     Error (cancelled) when it was told to stop, after the fade;
+///     Error (cancelled) when it was told to stop, after the fade, for which a device has half a second;
 ///     Error (data) when a limit was reached, an input clipped or nothing was heard;
 ///     Error (input) when the device does not open, is gone, all inputs froze, or samples are lost at every attempt.
 Measured measure(System&, const Device&, const MeasureOptions&);
@@ -45,8 +45,10 @@ Measured measure(System&, const Device&, const MeasureOptions&);
 /// What ended a procedure before its end, in a sentence; for all kinds but `complete` and `stopped`.
 std::string sentenceOf(const Ending&, const ProcedureOptions&);
 
-/// The loudest of the periods that an excitation plays, for the rise: where its largest peak is.
-/// @return the first sample of that period
-std::size_t loudestPeriod(const Excitation&, const std::vector<double>& samples);
+/// What a plan plays, and the loudest of its periods, where its largest peak is, for the rise. Inputs and outputs are
+/// still to be told. Throws Error (data) where nothing would sound, or more than the output can give.
+/// @param period     samples; of a sweep with the silence behind it
+/// @param fullScale  V at an output sample of 1.0
+ProcedureOptions procedureFor(const Measurement& plan, std::size_t period, double fullScale);
 
 }  // namespace excursion::audio

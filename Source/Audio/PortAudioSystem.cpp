@@ -74,15 +74,16 @@ int callback(const void* in, void* out, unsigned long frames, const PaStreamCall
     auto* const* const outputs = static_cast<float* const*>(out);
     link.inside.store(true);
     auto* const client = link.client.load();
-    // in is null while an input has overflowed for so long that PortAudio has nothing to give
-    if (client != nullptr && in != nullptr && out != nullptr) {
+    if (client != nullptr && out != nullptr) {
         Block block;
         block.in = static_cast<const float* const*>(in);
         block.out = outputs;
         block.inputs = link.inputs;
         block.outputs = link.outputs;
         block.frames = frames;
-        block.broken = (flags & (paInputUnderflow | paInputOverflow | paOutputUnderflow | paOutputOverflow)) != 0;
+        // in is null while an input has overflowed for so long that PortAudio has nothing to give
+        block.broken = in == nullptr
+                       || (flags & (paInputUnderflow | paInputOverflow | paOutputUnderflow | paOutputOverflow)) != 0;
         client->process(block);
     } else if (out != nullptr) {
         for (std::size_t c = 0; c < link.outputs; ++c)

@@ -208,8 +208,9 @@ void Procedure::look(const Block& block, std::size_t frame)
                 end(Ending::Kind::limit, k, value);
         }
     }
-    still_ = moved ? 0 : still_ + 1;
-    if (now_ == Stage::playing && still_ > framesOf(frozenSeconds, options_.sampleRate))
+    const bool sounds = now_ == Stage::playing && options_.sound[at_] != 0.0f;  // else nothing need move
+    still_ = moved || !sounds ? 0 : still_ + 1;
+    if (still_ > framesOf(frozenSeconds, options_.sampleRate))
         end(Ending::Kind::frozen);
 }
 
@@ -284,7 +285,7 @@ void Procedure::advance()
 
 void Procedure::process(const Block& block) noexcept
 {
-    if (block.broken) {
+    if (block.broken || block.in == nullptr) {
         breaks_.fetch_add(1, std::memory_order_relaxed);
         if (isRecorded(now_))
             end(Ending::Kind::broken);
@@ -292,9 +293,11 @@ void Procedure::process(const Block& block) noexcept
     if (stopAsked_.load(std::memory_order_relaxed))
         end(Ending::Kind::stopped);
     for (std::size_t n = 0; n < block.frames; ++n) {
-        look(block, n);
-        if (isRecorded(now_))
-            record(block, n);
+        if (block.in != nullptr) {
+            look(block, n);
+            if (isRecorded(now_))
+                record(block, n);
+        }
         const float s = next();
         for (std::size_t c = 0; c < block.outputs; ++c)
             block.out[c][n] = 0.0f;

@@ -19,7 +19,7 @@ struct Device {
 
 /// A stretch of sound, played and recorded at the same time. Samples are -1 .. 1.
 struct Block {
-    const float* const* in = nullptr;  ///< one pointer an input
+    const float* const* in = nullptr;  ///< one pointer an input; null, and broken, when there is nothing to be had
     float* const* out = nullptr;       ///< one pointer an output, to be filled
     std::size_t inputs = 0, outputs = 0, frames = 0;
     bool broken = false;  ///< samples of before or within this block were lost or made up (xrun)

@@ -3,6 +3,7 @@
 
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Error.h"
+#include "Engine/Take/TakeFile.h"
 
 #include <cctype>
 #include <filesystem>
@@ -66,6 +67,21 @@ void requireFolderPlace(const std::string& folder)
     if (folder.empty())
         refuse(folder, "the name is empty");
     requireWritable(folder, folder);
+}
+
+void requireApart(const std::string& read, const std::string& written)
+{
+    const auto filesOf = [](const std::string& place) {
+        auto files = filesOfTake(place);
+        files.emplace_back(place);
+        return files;
+    };
+    std::error_code none;
+    for (const auto& one : filesOf(read))
+        for (const auto& other : filesOf(written))
+            if (fs::equivalent(one, other, none))
+                throw Error(Error::Kind::usage,
+                            "'" + read + "' would be overwritten; give what is written another name.");
 }
 
 }  // namespace excursion::cli

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/ImportRecording.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -18,6 +19,8 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <utility>
+#include <variant>
 
 namespace excursion::cli {
 namespace {
@@ -107,39 +110,32 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
         {{"take", out}, {"kind", "spectra"}, {"frequencies", spectra.frequency.size()}, {"remarks", spectra.remarks}}));
 }
 
-Take read(const ImportArguments& options)
+std::variant<SweepTake, Spectra> readAny(const ImportArguments& options)
 {
+    const auto sorted = [](Take take) -> std::variant<SweepTake, Spectra> {
+        if (auto* spectra = std::get_if<Spectra>(&take))
+            return std::move(*spectra);
+        return SweepTake {std::move(std::get<Measurement>(take)), {}};
+    };
     if (endingOf(options.file) == ".mat")
-        return importMat(options.file, importOptions(options));
-    std::error_code ignored;
-    if (endingOf(options.file) != ".json" && endingOf(options.file) != ".wav"
-        && std::filesystem::is_regular_file(options.file, ignored))
-        return importText(options.file, importOptions(options));
+        return sorted(importMat(options.file, importOptions(options)));
+    const auto own = headerOf(options.file);
+    if (own.empty() && endingOf(options.file) != ".wav")
+        return sorted(importText(options.file, importOptions(options)));
     if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean
         || !options.as.empty() || options.minimumPhase)
         throw Error(Error::Kind::usage,
                     "--map, --as, --rate, --from, --to, --remove-mean and --minimum-phase are for text and MAT files.");
-    return readTake(options.file);
-}
-
-/// What is imported is not to be replaced by what is made of it.
-void requireOtherPlace(const ImportArguments& options)
-{
-    const std::filesystem::path out = options.out;
-    std::error_code none;
-    for (const auto& file : options.files)
-        for (const auto& read : {std::filesystem::path(file), std::filesystem::path(file) / "measurement.json"})
-            for (const auto& written : {out, out / "measurement.json", out / "take.wav"})
-                if (std::filesystem::equivalent(read, written, none))
-                    throw Error(Error::Kind::usage, "'" + file
-                                                        + "' would be overwritten by what is made of it; give "
-                                                          "--out another name.");
+    if (own.empty())
+        return sorted(readTake(options.file));
+    return readOwnTake(own);
 }
 
 void run(ImportArguments options, Terminal& terminal)
 {
     options.file = options.files.front();
-    requireOtherPlace(options);
+    for (const auto& file : options.files)
+        requireApart(file, options.out);
     if (isRecording(options.file)) {
         options.recording.files = options.files;
         options.recording.map = options.map;
@@ -158,17 +154,20 @@ void run(ImportArguments options, Terminal& terminal)
         throw Error(Error::Kind::usage,
                     "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file
                         + "' is none.");
-    auto take = read(options);
-    if (auto* spectra = std::get_if<Spectra>(&take))
+    auto read = readAny(options);
+    if (auto* spectra = std::get_if<Spectra>(&read)) {
+        if (!options.name.empty())
+            throw Error(Error::Kind::usage, "A frequency response keeps no name of the loudspeaker; leave --name out.");
         return importSpectra(*spectra, options.out, terminal);
-    auto& measurement = std::get<Measurement>(take);
+    }
+    auto& sweeps = std::get<SweepTake>(read);
     if (!options.name.empty())
-        measurement.driver.name = options.name;
+        sweeps.take.driver.name = options.name;
     if (endingOf(options.out) == ".csv")
-        writeCsv(measurement, options.out);
+        writeCsv(sweeps.take, options.out);
     else
-        writeMeasurement(measurement, options.out);
-    describe(measurement, terminal, options.out);
+        writeSweepTake(sweeps, options.out);
+    describe(sweeps.take, terminal, options.out);
 }
 
 }  // namespace

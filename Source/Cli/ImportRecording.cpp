@@ -28,11 +28,8 @@ RecordingOptions recordingOptions(const RecordingArguments& arguments)
     for (const auto& mapping : arguments.map)
         options.map.push_back(parseChannelMapping(mapping));
     if (!arguments.plan.empty()) {
-        // A folder may hold both what was to be played and what came of it.
-        const auto planned = std::filesystem::path(arguments.plan) / "plan.json";
-        std::error_code none;
-        auto plan = readSweepTake(std::filesystem::exists(planned, none) ? planned
-                                                                         : std::filesystem::path(arguments.plan));
+        const auto header = planHeaderOf(arguments.plan);
+        auto plan = header.empty() ? readSweepTake(arguments.plan) : readOwnTake(header);
         options.plan = std::move(plan.take);
         options.sweep = std::move(plan.sweep);
     }

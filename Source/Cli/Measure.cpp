@@ -14,7 +14,6 @@
 #include "Engine/Error.h"
 #include "Engine/Import/AssignChannels.h"
 #include "Engine/Import/PlanPeriods.h"
-#include "Engine/Signal/Level.h"
 #include "Engine/Take/TakeFile.h"
 #include "Engine/Take/WavFile.h"
 
@@ -106,18 +105,10 @@ std::vector<AssignedChannel> inputsOf(const RecordingOptions& options)
 audio::ProcedureOptions procedureOf(const MeasureArguments& arguments, const RecordingOptions& options)
 {
     const auto& plan = *options.plan;
-    periodsOf(plan);  // refuses what is no plan
-    audio::ProcedureOptions procedure;
-    procedure.sampleRate = plan.sampleRate;
-    const auto& played = plan.input();
-    const double peak = peakOf(played.samples) / played.fullScale;
-    if (!(peak <= 1.0) || !(peak > 0.0))
-        throw Error(Error::Kind::data, "'" + arguments.recording.plan + "' peaks at " + significant(peak)
-                                           + " of its own full scale; a plan that can be played has 0 to 1.");
-    for (const double u : played.samples)
-        procedure.sound.push_back(static_cast<float>(u / played.fullScale));
-    procedure.loudBegin = audio::loudestPeriod(*plan.excitation, played.samples);
-    procedure.loudLength = static_cast<std::size_t>(plan.excitation->period);
+    if (!options.sweep)
+        periodsOf(plan);  // refuses what is no plan
+    const auto period = options.sweep ? options.sweep->blockSamples(plan.sampleRate) : plan.excitation->period;
+    auto procedure = audio::procedureFor(plan, static_cast<std::size_t>(period), plan.input().fullScale);
     procedure.rise = arguments.rise;
     procedure.recorded = 1;
     for (const auto& channel : inputsOf(options)) {
@@ -249,7 +240,7 @@ void run(const MeasureArguments& a, Terminal& terminal)
     const auto report = check(imported.take);
     const auto checked = checkJson(report, a.recording.out, imported.take.sampleRate);
     imported.take.remarks = imported.remarks;  // after the check, as they are told beside it
-    writeMeasurement(imported.take, a.recording.out);
+    writeSweepTake({imported.take, imported.sweep}, a.recording.out);
     writeJson(checked, (std::filesystem::path(a.recording.out) / "check.json").string());
 
     sayImported(imported, true, a.recording.out, terminal);

@@ -56,10 +56,7 @@ void sayWritten(const PredistortArguments& options, const std::string& unit, Ter
 Wav readPlayable(const std::string& file, const std::string& out)
 {
     auto wav = readWav(file);
-    std::error_code none;
-    if (std::filesystem::equivalent(file, out, none))
-        throw Error(Error::Kind::usage,
-                    "The WAV that is played would be overwritten: give another name for what comes out.");
+    requireApart(file, out);
     for (std::size_t c = 0; c < wav.channels.size(); ++c)
         requireFinite(wav, c, file);
     return wav;

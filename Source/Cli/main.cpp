@@ -121,9 +121,18 @@ int main(int argc, char** argv)
     app.add_flag("--progress", terminal.progressLines,
                  "tell on stderr how far the work is, in lines that a program can read");
     app.require_subcommand(1);
-    app.parse_complete_callback([&terminal] {  // before the verb does its work
-        if (!terminal.jsonFile.empty() && terminal.jsonFile != "-")
-            cli::requireFilePlace(terminal.jsonFile);
+    app.parse_complete_callback([&terminal, argc, argv] {  // before the verb does its work
+        if (terminal.jsonFile.empty() || terminal.jsonFile == "-")
+            return;
+        cli::requireFilePlace(terminal.jsonFile);
+        for (int k = 1; k < argc; ++k) {
+            const std::string_view given = argv[k];
+            if (given == "--json")
+                ++k;
+            else if (!given.starts_with("--json="))
+                cli::requireApart(std::string(given.substr(given.starts_with("--") ? given.find('=') + 1 : 0)),
+                                  terminal.jsonFile);
+        }
     });
 
     // In the order of the method: --help prints them so.

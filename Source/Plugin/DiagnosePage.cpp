@@ -73,6 +73,7 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
     evidence_.told = tell;
     evidence_.getProperties().set("empty", "What the trial of an effect has found is drawn here.");
     falls_.told = tell;
+    begin_.onClick = [this] { session().begin(); };
     undo_.onClick = [this] { session().undo(); };
     linearize_.onClick = [this] {
         if (findings_ && !findings_->file.ladder.rungs.empty()) {
@@ -96,7 +97,8 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
         truth_.setVisible(true);
         resized();
     };
-    add({&verdict_, &list_, &evidence_, &falls_, &undo_, &linearize_, &report_, &reveal_, &truth_});
+    add({&verdict_, &list_, &evidence_, &falls_, &begin_, &undo_, &linearize_, &report_, &reveal_, &truth_});
+    begin_.setVisible(false);
     reveal_.setVisible(false);
     truth_.setVisible(false);
 }
@@ -117,10 +119,8 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
                                        + inFewWords(ladder.rungs.back().diagnosis.remainder) + "."
                                  : ladder.sentence;
     verdict_.setTooltip(typeset(ladder.sentence));
-    verdict_.setText(typeset(!ladder.rungs.empty() ? verdict
-                             : fit                 ? "The first model is being fitted."
-                                                   : findings.report.verdict()),
-                     juce::dontSendNotification);
+    if (!lacksModel())
+        verdict_.setText(typeset(fit ? verdict : findings.report.verdict()), juce::dontSendNotification);
     look::setTone(verdict_, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement)
                                                           : look::Tone::dim);
     std::vector<Plot> falls;
@@ -173,9 +173,19 @@ void DiagnosePage::select(std::size_t place)
                        : soundOf(*findings_));
 }
 
+bool DiagnosePage::lacksModel() const
+{
+    return findings_ && findings_->file.ladder.rungs.empty() && findings_->report.fitForUse();
+}
+
 void DiagnosePage::tick()
 {
     const bool idle = !session().status().busy;
+    begin_.setVisible(idle && lacksModel());
+    undo_.setVisible(!begin_.isVisible());
+    if (lacksModel())
+        verdict_.setText(idle ? "There is no model of this take yet." : "The first model is being fitted.",
+                         juce::dontSendNotification);
     const auto rungs = findings_ ? findings_->file.ladder.rungs.size() : 0;
     for (auto& candidate : candidates_)
         candidate->enable(idle);
@@ -216,6 +226,7 @@ void DiagnosePage::resized()
     verdict_.setBounds(area.removeFromTop(58));
     auto foot = area.removeFromBottom(28);
     const int width = std::min(200, (foot.getWidth() - 3 * 8) / 4);
+    begin_.setBounds(foot.withWidth(width));
     for (auto* button : {&undo_, &linearize_, &report_, &reveal_}) {
         button->setBounds(foot.removeFromLeft(width));
         foot.removeFromLeft(8);

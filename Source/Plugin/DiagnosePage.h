@@ -28,6 +28,7 @@ private:
     static constexpr auto noCandidate = static_cast<std::size_t>(-1);  ///< selects the advice
     void select(std::size_t place);
     void layOutList();
+    bool lacksModel() const;  ///< of a take that could have one
 
     std::shared_ptr<const Findings> findings_;
     juce::Label verdict_, truth_;
@@ -38,8 +39,8 @@ private:
     std::size_t selected_ = 0;
     PlotView evidence_;
     PlotGrid falls_ {"How the errors fall"};
-    juce::TextButton undo_ {"Take the last effect back"}, linearize_ {"Linearize with this model"},
-        report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
+    juce::TextButton begin_ {"Fit the first model"}, undo_ {"Take the last effect back"},
+        linearize_ {"Linearize with this model"}, report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
     std::unique_ptr<juce::FileChooser> chooser_;
 };
 

@@ -135,8 +135,8 @@ void Editor::update()
         if (const auto findings = owner_.session().findings())
             show(findings);
     }
-    if (!status.busy)
-        laddering_ = false;  // what the history asked for has been done, or has failed
+    if (!status.busy && std::exchange(laddering_, false))
+        history_.failed();  // what it asked the ladder for was cancelled, or went wrong
     if (auto standstill = owner_.standstill(); standstill != standstill_) {
         standstill_ = std::move(standstill);
         tell(standstill_.empty() ? juce::String("The engine runs again.") : words(standstill_), !standstill_.empty());

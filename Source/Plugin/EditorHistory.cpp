@@ -65,20 +65,27 @@ void Editor::noteLadder(const std::shared_ptr<const Findings>& findings)
     }
     if (std::exchange(laddering_, false) || before.empty())
         return;
-    const auto back = [this] {
-        laddering_ = true;
-        owner_.session().undo();
+    // A step moves only the ladder that it is of: one that was cancelled amid other steps has left another.
+    const auto back = [this](const std::vector<std::string>& of) {
+        return [this, of] {
+            if (rungs_ != of)
+                return;
+            laddering_ = true;
+            owner_.session().undo();
+        };
     };
-    const auto again = [this](const std::string& effect) {
-        return [this, effect] {
+    const auto again = [this](const std::vector<std::string>& of, const std::string& effect) {
+        return [this, of, effect] {
+            if (rungs_ != of)
+                return;
             laddering_ = true;
             owner_.session().add(effect);
         };
     };
     if (rungs.size() == before.size() + 1)
-        history_.did("Add " + words(rungs.back()), back, again(rungs.back()));
+        history_.did("Add " + words(rungs.back()), back(rungs), again(before, rungs.back()));
     else if (rungs.size() + 1 == before.size())
-        history_.did("Take back " + words(before.back()), again(before.back()), back);
+        history_.did("Take back " + words(before.back()), again(rungs, before.back()), back(before));
 }
 
 /// That another model plays is a step of the history.

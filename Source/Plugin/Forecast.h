@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Progress.h"
+
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -10,17 +12,20 @@
 
 namespace excursion::plugin {
 
-/// Keeps an answer that takes long up to date on a thread of its own; only the latest question is answered. Not for the
-/// audio thread.
+/// Keeps an answer that takes long up to date on a thread of its own; only the latest question is answered, and one
+/// that it follows is told to stop. Not for the audio thread.
 template <class Answer>
 class Forecast {
 public:
-    using Question = std::function<Answer()>;  ///< does not throw
+    /// Throws nothing but Error (cancelled).
+    using Question = std::function<Answer(const Progress&)>;
 
     Forecast() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
     ~Forecast()
     {
         thread_.request_stop();
+        const std::lock_guard lock(mutex_);
+        stop_.request_stop();
         changed_.notify_all();
     }
 
@@ -28,6 +33,7 @@ public:
     {
         const std::lock_guard lock(mutex_);
         open_ = std::move(question);
+        stop_.request_stop();
         changed_.notify_all();
     }
 
@@ -43,17 +49,28 @@ private:
     {
         std::unique_lock lock(mutex_);
         while (changed_.wait(lock, stop, [this] { return open_.has_value(); })) {
+            if (stop.stop_requested())
+                return;
             const auto question = *std::exchange(open_, std::nullopt);
+            stop_ = std::stop_source();
+            Progress progress;
+            progress.stop = stop_.get_token();
             lock.unlock();
-            auto answer = question();
+            std::optional<Answer> answer;
+            try {
+                answer = question(progress);
+            } catch (const Error&) {  // another question follows, or none
+            }
             lock.lock();
-            answer_ = std::move(answer);
+            if (answer)
+                answer_ = std::move(answer);
         }
     }
 
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::optional<Question> open_;
+    std::stop_source stop_;  ///< of the question that is being answered
     std::optional<Answer> answer_;
     std::jthread thread_;
 };

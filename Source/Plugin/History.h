@@ -12,7 +12,7 @@ class History {
 public:
     /// It has been done already. @param what  in words, as in "Undo: Voltage limit"
     void did(const juce::String& what, std::function<void()> back, std::function<void()> again);
-    void clear() { steps_.clearUndoHistory(); }
+    void clear();
 
     bool canUndo() const { return steps_.canUndo(); }
     bool canRedo() const { return steps_.canRedo(); }
@@ -21,10 +21,17 @@ public:
     void undo();
     void redo();
     bool moving() const { return moving_; }  ///< within undo() or redo()
+    /// What the last undo() or redo() asked for has not come to pass: its step is as it was before.
+    void failed();
 
 private:
+    enum class Way { none, back, again };
+    void move(Way);
+
     juce::UndoManager steps_;
     bool moving_ = false;
+    bool asks_ = true;      ///< a step that moves does what it stands for
+    Way last_ = Way::none;  ///< undo() or redo(), as long as nothing else came
 };
 
 }  // namespace excursion::plugin

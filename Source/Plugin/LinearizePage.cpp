@@ -246,14 +246,16 @@ void LinearizePage::showForecast()
     if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
         asked_ = std::move(question);
         const auto loaded = processor_.model();
-        forecast_.ask(
-            [model = withoutOff(loaded, recipe), controls = controlsOf(recipe, loaded), volts = recipe.fullScale] {
-                try {
-                    return std::optional(predictDistortion(model, controls, volts));
-                } catch (const Error&) {
-                    return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
-                }
-            });
+        forecast_.ask([model = withoutOff(loaded, recipe), controls = controlsOf(recipe, loaded),
+                       volts = recipe.fullScale](const Progress& progress) {
+            try {
+                return std::optional(predictDistortion(model, controls, volts, {}, progress));
+            } catch (const Error& error) {
+                if (error.kind() == Error::Kind::cancelled)
+                    throw;
+                return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
+            }
+        });
     }
     const auto answer = forecast_.collect().value_or(std::nullopt);
     if (!answer)

@@ -3,10 +3,12 @@
 
 #include "Bench/Draw.h"
 #include "Engine/Document/Engineering.h"
+#include "Engine/Take/TakeFile.h"
 #include "Plots/Words.h"
 #include "Plugin/Look.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace excursion::plugin {
 namespace {
@@ -116,9 +118,11 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
                               });
     };
     save_.onClick = [this] {
+        const auto home = juce::File::getSpecialLocation(juce::File::userHomeDirectory);
+        const bool refused = session().refusedRecording() != nullptr;
         chooser_ = std::make_unique<juce::FileChooser>(
-            "Save the take as a folder",
-            juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take").getNonexistentSibling());
+            refused ? "Save the recording as a folder" : "Save the take as a folder",
+            home.getChildFile(refused ? "recording" : "take").getNonexistentSibling());
         chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
             if (chosen.getResult() != juce::File())
                 save(chosen.getResult());
@@ -159,19 +163,30 @@ void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
     report_.setText(textOf(findings), juce::dontSendNotification);
     report_.moveCaretToTop(false);
     signal_.show(signalPlot(findings.report));
-    save_.setEnabled(!spectra);
+    taken_ = !spectra;
 }
 
 void MeasurePage::save(const juce::File& folder)
 {
-    if (folder.getChildFile("measurement.json").exists())
-        window_.tell("\"" + folder.getFileName() + "\" holds a take already: choose another name.", true);
+    const auto path = folder.getFullPathName().toStdString();
+    bool holds = folder.getChildFile("recording.wav").exists() || folder.getChildFile("plan").exists();
+    std::error_code none;
+    for (const auto& file : filesOfTake(path))
+        holds = holds || std::filesystem::exists(file, none);
+    if (holds)
+        window_.tell("\"" + folder.getFileName() + "\" holds a take or a recording already: choose another name.",
+                     true);
+    else if (session().refusedRecording())
+        session().saveRecording(path);
     else
-        session().saveTake(folder.getFullPathName().toStdString());
+        session().saveTake(path);
 }
 
 void MeasurePage::tick()
 {
+    const bool refused = session().refusedRecording() != nullptr;
+    save_.setButtonText(refused ? "Save the recording..." : "Save the take...");
+    save_.setEnabled(refused || taken_);
     if (measuring_)
         measuring_->tick();
 }
@@ -205,7 +220,7 @@ void MeasurePage::resized()
     if (measuring_)
         measuring_->setBounds(left.removeFromTop(juce::jmin(left.getHeight(), MeasuringPanel::leastHeight + 60)));
     verdict_.setBounds(area.removeFromTop(44));
-    save_.setBounds(area.removeFromBottom(28).removeFromLeft(140));
+    save_.setBounds(area.removeFromBottom(28).removeFromLeft(160));
     area.removeFromBottom(8);
     report_.setBounds(area.removeFromTop(area.getHeight() * 2 / 5));
     area.removeFromTop(8);

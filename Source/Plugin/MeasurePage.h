@@ -23,8 +23,9 @@ public:
     void resized() override;
 
     MeasuringPanel* measuring() { return measuring_.get(); }
-    void choose();                 ///< asks for a take
-    void save(const juce::File&);  ///< the take as a folder, unless that holds one
+    void choose();  ///< asks for a take
+    /// The take, or a recording that is none, as a folder, unless that holds one.
+    void save(const juce::File&);
 
 private:
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;
@@ -36,6 +37,7 @@ private:
     juce::TextEditor report_;
     PlotView signal_;
     std::unique_ptr<juce::FileChooser> chooser_;
+    bool taken_ = false;  ///< there is a take of time signals
 };
 
 }  // namespace excursion::plugin

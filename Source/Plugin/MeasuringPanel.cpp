@@ -2,8 +2,10 @@
 #include "Plugin/MeasuringPanel.h"
 
 #include "Engine/Error.h"
+#include "Plots/Words.h"
 #include "Plugin/Look.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <utility>
@@ -65,7 +67,9 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
         input.role.setTitle("What input " + juce::String(k + 1) + " is");
         input.fullScale.setTitle("Full scale of input " + juce::String(k + 1));
         input.fullScale.setTooltip("What a sample of 1.0 stands for");
-        add({&input.title, &input.role, &input.fullScale, &input.unit});
+        input.limit.setTitle("Limit of input " + juce::String(k + 1));
+        input.limit.setTextToShowWhenEmpty("no limit", look::palette().dim);
+        add({&input.title, &input.role, &input.fullScale, &input.unit, &input.limit});
     }
     add({&outputTitle_, &outputChannel_, &fullScaleTitle_, &fullScale_, &levelsTitle_, &levels_, &bandTitle_, &low_,
          &high_, &preview_, &go_});
@@ -94,7 +98,7 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
 
 MeasuringPanel::~MeasuringPanel()
 {
-    if (recorder_)
+    if (measuring_)
         end();
 }
 
@@ -102,9 +106,14 @@ void MeasuringPanel::relabel(Input& input)
 {
     const int q = input.role.getSelectedId() - 2;
     input.fullScale.setEnabled(q >= 0);
-    input.unit.setText(q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) + " at full scale"
-                              : juce::String(),
-                       juce::dontSendNotification);
+    input.limit.setEnabled(q >= 0);
+    const auto unit = q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) : juce::String();
+    input.unit.setText(q >= 0 ? unit + " full scale" : juce::String(), juce::dontSendNotification);
+    input.limit.setTooltip(
+        q >= 0 ? "What it must not reach, in " + unit
+                     + (quantities[static_cast<std::size_t>(q)] == Quantity::displacement ? " from where it rests" : "")
+                     + ": the measurement fades out and ends. Empty: no limit"
+               : juce::String());
 }
 
 void MeasuringPanel::setRole(int input, Quantity quantity, double fullScale)
@@ -115,6 +124,11 @@ void MeasuringPanel::setRole(int input, Quantity quantity, double fullScale)
             one.role.setSelectedId(static_cast<int>(q) + 2, juce::dontSendNotification);
     one.fullScale.setText(juce::String(fullScale));
     relabel(one);
+}
+
+void MeasuringPanel::setLimit(int input, const juce::String& text)
+{
+    inputs_[static_cast<std::size_t>(input)].limit.setText(text);
 }
 
 void MeasuringPanel::setBand(double low, double high)
@@ -156,7 +170,10 @@ std::vector<InputRole> MeasuringPanel::roles() const
         for (const auto& other : result)
             if (other.quantity == quantity)
                 throw Error(Error::Kind::usage, "Two inputs are the " + std::string(name(quantity)) + ": choose one.");
-        result.push_back({k, quantity, entered(input.fullScale.getText(), "calibration")});
+        InputRole role {k, quantity, entered(input.fullScale.getText(), "calibration"), {}};
+        if (input.limit.getText().trim().isNotEmpty())
+            role.limit = entered(input.limit.getText(), "limit");
+        result.push_back(role);
     }
     return result;
 }
@@ -171,8 +188,9 @@ void MeasuringPanel::preview()
                                * static_cast<double>(options.levels.size()) / options.multisine.sampleRate;
         // A random-phase multisine peaks at some four times its rms.
         const double peak = 4.0 * options.levels.back(), most = entered(fullScale_.getText(), "voltage");
-        preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1)
-                             + " V peak" + (peak > most ? ", more than the output can give!" : "."),
+        preview_.setText("Rises to full level, then plays " + whole(seconds) + " s of odd multisines, to about "
+                             + juce::String(peak, 1) + " V peak"
+                             + (peak > most ? ", more than the output can give!" : "."),
                          juce::dontSendNotification);
         look::setTone(preview_, peak > most ? look::Tone::warning : look::Tone::dim);
     } catch (const Error& error) {
@@ -189,15 +207,12 @@ void MeasuringPanel::start()
             throw Error(Error::Kind::usage, "No audio device is open: choose one first.");
         auto plan = planExcitation(planOptions());
         const double fullScale = entered(fullScale_.getText(), "voltage");
-        for (const double volts : plan.input().samples)
-            if (std::abs(volts) > fullScale)
-                throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the "
-                                                "levels or turn up the amplifier.");
         auto wanted = roles();
         bool voltage = false;
-        for (auto& role : wanted) {
+        std::vector<int> inputs;
+        for (const auto& role : wanted) {
             voltage = voltage || role.quantity == Quantity::voltage;
-            role.input = placeAmong(device->getActiveInputChannels(), role.input, "Input", *device);
+            inputs.push_back(placeAmong(device->getActiveInputChannels(), role.input, "Input", *device));
         }
         const int output = placeAmong(device->getActiveOutputChannels(), outputChannel_.getSelectedId() - 1, "Output",
                                       *device);
@@ -205,21 +220,19 @@ void MeasuringPanel::start()
             throw Error(
                 Error::Kind::usage,
                 "Choose an input for the voltage at the terminals and at least one other, such as the current.");
-        recorder_ = std::make_unique<Recorder>(std::move(plan), wanted, output, fullScale);
-        seen_ = -1.0;
+        measuring_ = std::make_unique<Measuring>(std::make_unique<OpenDevice>(devices_, inputs, output),
+                                                 std::move(plan), wanted, fullScale);
         window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
-        devices_.addAudioCallback(recorder_.get());
         go_.setButtonText("Stop");
         window_.tell("Measuring. Do not touch the loudspeaker.", false);
     } catch (const Error& error) {
-        recorder_ = nullptr;
         window_.tell(words(error.what()), true);
     }
 }
 
 void MeasuringPanel::end()
 {
-    devices_.removeAudioCallback(recorder_.get());
+    measuring_ = nullptr;
     window_.processor().suspendProcessing(false);
     go_.setButtonText("Start measuring");
     preview();
@@ -227,11 +240,8 @@ void MeasuringPanel::end()
 
 void MeasuringPanel::cancel()
 {
-    if (!recorder_)
-        return;
-    end();
-    recorder_ = nullptr;
-    window_.tell("The measurement was stopped.", false);
+    if (measuring_)
+        measuring_->stop();
 }
 
 void MeasuringPanel::tick()
@@ -242,37 +252,49 @@ void MeasuringPanel::tick()
                                   + juce::String(device->getActiveInputChannels().countNumberOfSetBits()) + " inputs"
                             : juce::String("no device is open"),
                         juce::dontSendNotification);
-    if (!recorder_)
+    if (!measuring_)
         return;
-    const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes();
-    if (recorder_->fraction() != seen_) {
-        seen_ = recorder_->fraction();
-        movedAt_ = now;
-    }
-    if (!recorder_->broken() && !recorder_->finished() && now - movedAt_ > patience) {
-        // Some drivers stop without a word when a device is unplugged.
-        end();
-        recorder_ = nullptr;
-        window_.tell("The audio device delivers no sound any more: choose it again, and measure again.", true);
-        return;
-    }
-    if (recorder_->broken()) {
-        end();
-        recorder_ = nullptr;
-        window_.tell("The audio device stopped or changed its rate: measure again.", true);
-    } else if (recorder_->finished() && window_.processor().session().status().busy) {
+    if (!measuring_->ended())
+        showProgress();
+    else if (!measuring_->stopped() && window_.processor().session().status().busy)
         // A fit that is under way is not to end for it.
         preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
-    } else if (recorder_->finished()) {
+    else
+        take();
+}
+
+/// What came of a measurement that has ended.
+void MeasuringPanel::take()
+{
+    try {
+        auto done = measuring_->recorded();
         end();
-        const auto done = std::exchange(recorder_, nullptr);
+        auto* device = devices_.getCurrentAudioDevice();
         window_.processor().session().open(
-            done->recording(),
-            "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
-    } else {
-        look::setTone(preview_, look::Tone::text);
-        preview_.setText("Measuring, " + whole(100.0 * recorder_->fraction()) + " %", juce::dontSendNotification);
+            std::move(done.recording),
+            "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")),
+            std::move(done.remarks));
+    } catch (const Error& error) {
+        end();
+        if (error.kind() == Error::Kind::cancelled)
+            window_.tell("The measurement was stopped.", false);
+        else
+            window_.tell(words(error.what()), true);
     }
+}
+
+/// "Rising, voltage -12 dB, current -20 dB".
+void MeasuringPanel::showProgress()
+{
+    const auto status = measuring_->status();
+    auto text = words(capitalized(audio::name(status.stage)));
+    if (status.attempt > 1)
+        text += ", attempt " + juce::String(status.attempt);
+    for (std::size_t k = 0; k < status.meters.size(); ++k)
+        text += ", " + words(name(measuring_->roles()[k].quantity)) + " "
+                + whole(20.0 * std::log10(std::max(static_cast<double>(status.meters[k].peak), 1e-6))) + " dB";
+    look::setTone(preview_, look::Tone::text);
+    preview_.setText(text, juce::dontSendNotification);
 }
 
 void MeasuringPanel::showDevices()
@@ -298,7 +320,7 @@ void MeasuringPanel::resized()
         area.removeFromTop(gap);
         return line;
     };
-    constexpr int title = 64, wide = 108;
+    constexpr int title = 56, wide = 108;
     auto line = row();
     device_.setBounds(line.removeFromLeft(122));
     line.removeFromLeft(6);
@@ -306,9 +328,10 @@ void MeasuringPanel::resized()
     for (auto& input : inputs_) {
         line = row();
         input.title.setBounds(line.removeFromLeft(title));
-        input.role.setBounds(line.removeFromLeft(126));
-        line.removeFromLeft(8);
-        input.fullScale.setBounds(line.removeFromLeft(58));
+        input.role.setBounds(line.removeFromLeft(116));
+        line.removeFromLeft(6);
+        input.fullScale.setBounds(line.removeFromLeft(50));
+        input.limit.setBounds(line.removeFromRight(60));
         input.unit.setBounds(line);
     }
     line = row();

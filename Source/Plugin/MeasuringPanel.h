@@ -3,7 +3,7 @@
 
 #include "Engine/Take/ExcitationPlan.h"
 #include "Plugin/Page.h"
-#include "Plugin/Recorder.h"
+#include "Plugin/Measuring.h"
 
 #include <array>
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace excursion::plugin {
 
-/// A measurement through an audio device: which input is what and how it is calibrated, the excitation and its levels,
-/// go and stop.
+/// A measurement through an audio device: which input is what, how it is calibrated and what it must not reach, the
+/// excitation and its levels, go and stop.
 class MeasuringPanel : public juce::Component {
 public:
     static constexpr int leastHeight = 288;  ///< px
@@ -24,13 +24,14 @@ public:
     ExcitationPlanOptions planOptions() const;
     std::vector<InputRole> roles() const;
 
-    void start();  ///< as if the button had been pressed
-    void cancel();
+    void start();   ///< as if the button had been pressed
+    void cancel();  ///< fades out; it runs until that is done
     void tick();
-    bool running() const { return recorder_ != nullptr; }
-    double fraction() const { return recorder_ ? recorder_->fraction() : 0.0; }  ///< of a measurement that runs
+    bool running() const { return measuring_ != nullptr; }
+    double fraction() const { return measuring_ ? measuring_->status().fraction : 0.0; }  ///< of one that runs
 
     void setRole(int input, Quantity, double fullScale);
+    void setLimit(int input, const juce::String& text);
     void setOutput(int channel) { outputChannel_.setSelectedId(channel, juce::dontSendNotification); }  ///< from 1
     void setLevels(const juce::String& text) { levels_.setText(text); }
     void setBand(double low, double high);  ///< Hz
@@ -39,15 +40,17 @@ public:
 
 private:
     static constexpr int inputs = 4;
-    static constexpr double patience = 4.0;  ///< s without a block
     struct Input {
         juce::Label title;
         juce::ComboBox role;
         juce::TextEditor fullScale;
         juce::Label unit;
+        juce::TextEditor limit;
     };
 
     void end();
+    void take();
+    void showProgress();
     void preview();
     void showDevices();
     void relabel(Input&);
@@ -60,8 +63,7 @@ private:
     juce::Label levelsTitle_, bandTitle_, fullScaleTitle_, outputTitle_;
     juce::TextEditor levels_, low_, high_, fullScale_;
     juce::ComboBox outputChannel_;
-    std::unique_ptr<Recorder> recorder_;
-    double seen_ = 0.0, movedAt_ = 0.0;  ///< the last fraction, and when it came, s
+    std::unique_ptr<Measuring> measuring_;
 };
 
 }  // namespace excursion::plugin

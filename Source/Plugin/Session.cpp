@@ -6,8 +6,6 @@
 #include "Engine/Import/ImportRecording.h"
 #include "Engine/Import/ReadTake.h"
 #include "Engine/Loudspeaker/Catalogue.h"
-#include "Engine/Take/TakeFile.h"
-#include "Report/Report.h"
 
 #include <filesystem>
 
@@ -44,10 +42,10 @@ Session::~Session()
     changed_.notify_all();
 }
 
-void Session::order(Work work)
+void Session::order(Work work, bool saves)
 {
     const std::lock_guard lock(mutex_);
-    orders_.push_back(std::move(work));
+    orders_.push_back({std::move(work), saves});
     status_.busy = true;
     changed_.notify_all();
 }
@@ -55,10 +53,10 @@ void Session::order(Work work)
 void Session::cancel()
 {
     const std::lock_guard lock(mutex_);
-    orders_.clear();
+    std::erase_if(orders_, [](const Order& waiting) { return !waiting.saves; });
     shape_.reset();
     stop_.request_stop();
-    status_.busy = working_;
+    status_.busy = working_ || !orders_.empty();
     changed_.notify_all();
 }
 
@@ -68,7 +66,7 @@ void Session::run(const std::stop_token& stop)
     for (;;) {
         if (!changed_.wait(lock, stop, [this] { return !orders_.empty(); }))
             return;
-        const auto work = std::move(orders_.front());
+        const auto work = std::move(orders_.front().work);
         orders_.erase(orders_.begin());
         stop_ = std::stop_source();
         working_ = true;
@@ -157,7 +155,7 @@ void Session::publishLadder()
     say(improvement_->ladder().sentence);
 }
 
-void Session::begin(PreparedTake take, const Findings& told, const Progress& progress)
+void Session::take(PreparedTake take, const Findings& told, const Progress& progress)
 {
     Improvement work(take, {}, progress.part(0.0, 0.05));
     auto fresh = std::make_shared<Findings>(told);
@@ -165,6 +163,10 @@ void Session::begin(PreparedTake take, const Findings& told, const Progress& pro
     fresh->file = makeLadderFile(work.ladder(), take, told.source);
     fresh->take = std::make_shared<const PreparedTake>(std::move(take));
     put({});  // those of another take
+    {
+        const std::lock_guard lock(mutex_);
+        refused_ = nullptr;
+    }
     publish(fresh);
     improvement_.emplace(std::move(work));
     if (!improvement_->take().report().fitForUse()) {
@@ -180,7 +182,7 @@ void Session::open(const std::string& path)
     cancel();
     order([this, path](const Progress& progress) {
         progress.at(0.0, "reading the take");
-        begin(readTake(path), from(std::filesystem::path(path).filename().string()), progress);
+        take(readTake(path), from(std::filesystem::path(path).filename().string()), progress);
     });
 }
 
@@ -195,21 +197,43 @@ void Session::open(const VirtualOrder& wanted)
         options.sampleRate = 48000.0;
         options.seconds = 4.0;
         const auto drawn = bench::draw(wanted.seed, options);
-        auto take = bench::measure(drawn.speaker, drawn.setup, progress.part(0.0, 0.2));
+        auto measured = bench::measure(drawn.speaker, drawn.setup, progress.part(0.0, 0.2));
         auto told = from("Virtual " + drawn.driver + ", seed " + std::to_string(wanted.seed));
         told.truth = titlesOf(drawn.hidden);
-        begin(std::move(take), told, progress.part(0.2, 1.0));
+        take(std::move(measured), told, progress.part(0.2, 1.0));
     });
 }
 
-void Session::open(RecordingOptions recording, const std::string& source)
+void Session::open(RecordingOptions recorded, const std::string& source, std::vector<std::string> remarks)
 {
     cancel();
-    order([this, recording = std::move(recording), source](const Progress& progress) {
-        auto imported = importRecording(recording, progress.part(0.0, 0.1));
-        auto told = from(source);
-        told.remarks = std::move(imported.remarks);
-        begin(std::move(imported.take), told, progress.part(0.1, 1.0));
+    const auto recording = std::make_shared<const RecordingOptions>(std::move(recorded));
+    auto told = from(source);
+    told.remarks = std::move(remarks);
+    order([this, recording, told](const Progress& progress) {
+        ImportedRecording imported;
+        try {
+            imported = importRecording(*recording, progress.part(0.0, 0.1));
+        } catch (const Error& error) {
+            const std::lock_guard lock(mutex_);
+            refused_ = recording;
+            if (error.kind() == Error::Kind::cancelled)
+                throw;
+            throw Error(error.kind(), std::string(error.what()) + " Save the recording to look into it.");
+        }
+        auto all = told;
+        all.remarks.insert(all.remarks.end(), imported.remarks.begin(), imported.remarks.end());
+        take(std::move(imported.take), all, progress.part(0.1, 1.0));
+    });
+}
+
+void Session::begin()
+{
+    order([this](const Progress& progress) {
+        if (!improvement_ || !improvement_->take().report().fitForUse())
+            throw Error(Error::Kind::usage, "There is no take that is fit for use: open one first.");
+        improvement_->begin(progress);
+        publishLadder();
     });
 }
 
@@ -226,29 +250,6 @@ void Session::undo()
     order([this](const Progress&) {
         improvement().undo();
         publishLadder();
-    });
-}
-
-void Session::saveReport(const std::string& path)
-{
-    order([this, path](const Progress& progress) {
-        improvement();
-        progress.at(0.0, "drawing the report");
-        writeReport(findings()->file, path);
-        say("Wrote " + path + ".");
-    });
-}
-
-void Session::saveTake(const std::string& folder)
-{
-    order([this, folder](const Progress& progress) {
-        const auto now = findings();
-        const auto* measurement = now ? now->take->inTime() : nullptr;
-        if (measurement == nullptr)
-            throw Error(Error::Kind::usage, "There is no take of time signals to save.");
-        progress.at(0.0, "writing the take");
-        writeMeasurement(*measurement, folder);
-        say("Wrote " + folder + ".");
     });
 }
 

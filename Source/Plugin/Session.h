@@ -63,10 +63,12 @@ public:
 
     void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    void open(RecordingOptions,
-              const std::string& source);  ///< of a recording that was just made, as importRecording()
+    /// A recording that was just made, as importRecording().
+    /// @param remarks  on how it was made
+    void open(RecordingOptions, const std::string& source, std::vector<std::string> remarks = {});
     void add(const std::string& effect);
     void undo();
+    void begin();  ///< the first model of the take, where that was cancelled or went wrong
     void identify(const IdentifyWish&);
     void shape(const ShapeWish&);  ///< of the model that was identified; in place of a wish that waits
     void fitPnlss(const PnlssWish&);
@@ -74,10 +76,12 @@ public:
     /// To the take, by what drifts with temperature and age.
     /// @param version  comes back with what comes of it
     void adapt(const Model&, std::uint64_t version);
+    // What is there now, in its turn, whatever is cancelled or opened meanwhile; the destructor waits for it.
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
+    void saveRecording(const std::string& folder);  ///< refusedRecording(), with its plan
 
-    void cancel();  ///< what is under way, and what was ordered after it
+    void cancel();  ///< what is under way, and what was ordered after it but to be saved
 
     struct Status {
         bool busy = false;
@@ -89,6 +93,8 @@ public:
     };
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
+    /// What was just recorded and is no take; null: none. Another take or recording takes its place.
+    std::shared_ptr<const RecordingOptions> refusedRecording() const;
     Identification identification() const;
     /// What came of the latest order to adapt, once.
     std::optional<Adapted> takeAdapted();
@@ -97,10 +103,14 @@ public:
 
 private:
     using Work = std::function<void(const Progress&)>;
-    void order(Work);
+    struct Order {
+        Work work;
+        bool saves = false;
+    };
+    void order(Work, bool saves = false);
     void run(const std::stop_token&);
     /// @param told  Findings without a take
-    void begin(PreparedTake, const Findings& told, const Progress&);
+    void take(PreparedTake, const Findings& told, const Progress&);
     void publish(std::shared_ptr<Findings>);
     void publishLadder();
     std::shared_ptr<const Findings> taken() const;
@@ -110,12 +120,13 @@ private:
     std::optional<Improvement> improvement_;  ///< of the thread
     mutable std::mutex mutex_;                ///< of what follows
     mutable std::condition_variable_any changed_;
-    std::vector<Work> orders_;
+    std::vector<Order> orders_;
     std::optional<ShapeWish> shape_;  ///< of the order to shape that waits
     std::stop_source stop_;           ///< of the order under way
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
+    std::shared_ptr<const RecordingOptions> refused_;
     Identification identification_;
     std::optional<Adapted> adapted_;
     std::jthread thread_;

@@ -151,18 +151,20 @@ void TargetPanel::ask()
     answer.used = !own && (recipe.mode == Mode::linearize || recipe.mode == Mode::audition);
     if (own)
         answer.controls.target.kind = Target::Kind::resonance;
-    forecast_.ask([model, box, answer, volts = recipe.fullScale]() mutable {
+    forecast_.ask([model, box, answer, volts = recipe.fullScale](const Progress& progress) mutable {
         try {
             if (box && !box->played.rehearsal)
                 answer.refusal = "A model that is not turned around has no target.";
             else if (box)
                 answer.told = forecastTarget(box->played.box, box->played.region, box->played.rest,
-                                             *box->played.rehearsal, answer.controls, volts);
+                                             *box->played.rehearsal, answer.controls, volts, progress);
             else
-                answer.told = forecastTarget(model, answer.controls, volts);
+                answer.told = forecastTarget(model, answer.controls, volts, progress);
             if (answer.told && !box && withKnown(model, {}).motionIsGuessed)
                 answer.told = withoutLengths(std::move(*answer.told));
         } catch (const Error& error) {
+            if (error.kind() == Error::Kind::cancelled)
+                throw;
             answer.refusal = std::string(error.what()) + " The own linear part is played.";
         }
         return answer;

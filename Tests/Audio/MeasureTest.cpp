@@ -42,12 +42,7 @@ MeasureOptions measuring()
 {
     const auto& plan = shortPlan();
     MeasureOptions options;
-    auto& procedure = options.procedure;
-    procedure.sampleRate = sampleRate;
-    for (const double u : plan.input().samples)
-        procedure.sound.push_back(static_cast<float>(u / 16.0));
-    procedure.loudBegin = loudestPeriod(*plan.excitation, plan.input().samples);
-    procedure.loudLength = 4096;
+    auto& procedure = options.procedure = procedureFor(plan, 4096, 16.0);
     procedure.recorded = 3;
     procedure.inputs = {
         {0, Quantity::voltage, 16.0, {}}, {1, Quantity::current, 4.0, {}}, {2, Quantity::displacement, 8e-3, {}}};
@@ -140,6 +135,60 @@ TEST_CASE("A virtual loudspeaker is measured through a device, and the take is f
     const auto report = check(imported.take);
     INFO(report.verdict());
     CHECK(report.fitForUse());
+}
+
+TEST_CASE("Sweeps are measured after a rise of the loudest one, and are a take that knows them", "[audio]")
+{
+    SweepExcitation sweeps;
+    sweeps.bandLow = 30.0;
+    sweeps.bandHigh = 4000.0;
+    sweeps.seconds = 1.0;
+    sweeps.silence = 0.6;
+    sweeps.levels = {1.0, 2.0};
+    const auto plan = planSweep(sweeps, sampleRate);
+    const auto block = static_cast<std::size_t>(sweeps.blockSamples(sampleRate));
+    auto options = measuring();
+    const auto inputs = options.procedure.inputs;
+    options.procedure = procedureFor(plan, block, 16.0);
+    options.procedure.inputs = inputs;
+    options.procedure.recorded = 3;
+    options.procedure.rise = 1.0;
+    options.procedure.ringSeconds = 60.0;
+    CHECK(options.procedure.loudBegin == block);
+    CHECK(options.procedure.loudLength == block);
+    Wired wired;
+    const auto measured = wired.measure(options);
+    RecordingOptions recording;
+    recording.plan = plan;
+    recording.sweep = sweeps;
+    for (const auto* text : {"1=voltage:16", "2=current:4", "3=displacement:8mm"})
+        recording.map.push_back(parseChannelMapping(text));
+    Wav sound {static_cast<int>(sampleRate), {}};
+    for (const auto& channel : measured.channels)
+        sound.channels.emplace_back(channel.begin(), channel.end());
+    recording.sounds.push_back({"the recording", sound});
+    const auto imported = importRecording(recording);
+    REQUIRE(imported.sweep);
+    CHECK(imported.sweep->levels.size() == 2);
+    CHECK(imported.take.find(Quantity::voltage)->samples.size() == plan.input().samples.size());
+
+    // Where nothing is played, nothing need move: the inputs of a digital loop are silent then.
+    SimulatedSystem loop([] { return Wiring([](float played) { return std::vector<float>(3, 0.5f * played); }); });
+    CHECK_NOTHROW(audio::measure(loop, loop.devices().front(), options));
+}
+
+TEST_CASE("What is played must sound, and fit the output", "[audio]")
+{
+    const auto& plan = shortPlan();
+    double peak = 0.0;
+    for (const double volts : plan.input().samples)
+        peak = std::max(peak, std::abs(volts));
+    CHECK_NOTHROW(procedureFor(plan, 4096, 1.001 * peak));
+    CHECK_THROWS_WITH(procedureFor(plan, 4096, 0.999 * peak), Catch::Contains("full scale"));
+    auto silent = plan;
+    for (auto& channel : silent.channels)
+        std::fill(channel.samples.begin(), channel.samples.end(), 0.0);
+    CHECK_THROWS_AS(procedureFor(silent, 4096, 16.0), Error);
 }
 
 TEST_CASE("The cone of a virtual loudspeaker does not go far beyond its limit", "[audio]")

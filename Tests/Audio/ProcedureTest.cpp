@@ -84,12 +84,13 @@ struct Bench {
             inPlaces.push_back(channel.data());
         std::vector<float*> outPlaces {out[0].data(), out[1].data()};
         Block now;
-        now.in = inPlaces.data();
+        const bool given = nothingAt == 0 || played.size() < nothingAt;
+        now.in = given ? inPlaces.data() : nullptr;
         now.out = outPlaces.data();
         now.inputs = in.size();
         now.outputs = 2;
         now.frames = frames;
-        now.broken = brokenAt > 0 && played.size() < brokenAt && played.size() + frames >= brokenAt;
+        now.broken = !given || (brokenAt > 0 && played.size() < brokenAt && played.size() + frames >= brokenAt);
         procedure.process(now);
         played.insert(played.end(), out[0].begin(), out[0].end());
         std::copy(out[0].begin(), out[0].end(), back.end() - static_cast<std::ptrdiff_t>(frames));
@@ -105,7 +106,7 @@ struct Bench {
     std::vector<std::vector<float>> recorded;
     std::vector<float> played;
     float gain = 0.5f, otherOutput = 0.0f;
-    std::size_t brokenAt = 0, askAt = 0;
+    std::size_t brokenAt = 0, askAt = 0, nothingAt = 0;
     std::function<float(float, std::size_t)> shape = [this](float x, std::size_t) {
         return x + 1e-4f * static_cast<float>(normal(random));
     };
@@ -303,6 +304,25 @@ TEST_CASE("Lost samples count in the recording only", "[audio]")
         within.run();
         CHECK(within.procedure.ending().kind == Ending::Kind::broken);
     }
+}
+
+TEST_CASE("Where inputs give nothing, what is played fades out", "[audio]")
+{
+    const auto all = [] {
+        Bench whole(someOptions());
+        whole.run();
+        return whole.played;
+    }();
+    const auto options = someOptions();
+    Bench bench(options);
+    bench.nothingAt = all.size() - static_cast<std::size_t>(options.tail * rate) - 3 * period;  // amid the sound
+    bench.run();
+    CHECK(bench.procedure.ending().kind == Ending::Kind::broken);
+    CHECK(bench.procedure.ending().stage == Stage::playing);
+    CHECK(bench.procedure.breaks() > 0);
+    const auto end = bench.nothingAt + static_cast<std::size_t>(0.03 * rate) + 600;  // with two blocks
+    for (auto n = end; n < bench.played.size(); ++n)
+        REQUIRE(bench.played[n] == 0.0f);
 }
 
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <cstdlib>
+#include <sys/stat.h>
 #include <unistd.h>
 
 using namespace excursion::test;
@@ -260,8 +262,11 @@ TEST_CASE("What is no file is written to and stays what it is, and a full disk i
         WARN("skipped: there is no /dev/full");
         return;
     }
-    CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=/dev/null"}).code == 0);
-    CHECK(fs::is_character_file("/dev/null"));
+    const auto pipe = scratch / "pipe", copy = scratch / "copy.json";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    REQUIRE(std::system(("cat '" + pipe.string() + "' > '" + copy.string() + "' &").c_str()) == 0);
+    CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + pipe.string()}).code == 0);
+    CHECK(fs::is_fifo(pipe));
     const auto full = runProgram(scratch.folder(), {"parameters", model, "--json=/dev/full"});
     CHECK(full.code == 3);
     CHECK(full.err.find("'/dev/full' cannot be written") != std::string::npos);
@@ -277,6 +282,21 @@ TEST_CASE("What is no file is written to and stays what it is, and a full disk i
     CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + dangling.string()}).code == 0);
     CHECK(fs::is_symlink(dangling));
     CHECK(bytesOf((scratch / "later.json").string()) == bytesOf(real.string()));
+}
+
+TEST_CASE("A document replaces nothing that a verb reads", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = copyOfTake(scratch), header = take + "/measurement.json";
+    const auto model = scratch.file("model.json", bytesOf(Chain::get().model())).string();
+    const auto before = bytesOf(model), headerBefore = bytesOf(header);
+    refusedWith(2, {"parameters", model, "--json=" + model}, scratch, "would be overwritten");
+    refusedWith(2, {"parameters", model, "--json", model}, scratch, "would be overwritten");
+    refusedWith(2, {"check", take, "--json=" + header}, scratch, "would be overwritten");
+    refusedWith(2, {"compare", take, "--model=" + model, "--json", model}, scratch, "would be overwritten");
+    CHECK(bytesOf(model) == before);
+    CHECK(bytesOf(header) == headerBefore);
+    CHECK(runProgram(scratch.folder(), {"check", take, "--json=" + take + "/check.json"}).code == 0);
 }
 
 TEST_CASE("A document that is nested without end is refused", "[cli][bad-input]")

@@ -167,6 +167,18 @@ TEST_CASE("A recording of sweeps becomes a take that knows them", "[cli]")
     CHECK(sweeps.at("seconds") == header.at("excitation").at("seconds"));
 }
 
+TEST_CASE("A take of sweeps that is imported again keeps its sweeps", "[cli]")
+{
+    const Scratch scratch;
+    const auto& swept = Swept::get();
+    const auto out = (scratch / "again").string();
+    REQUIRE(runProgram(scratch.folder(), {"import", swept.take(), "--name", "another", "--out", out}).code == 0);
+    const auto before = Json::parse(bytesOf(swept.take() + "/measurement.json")),
+               after = Json::parse(bytesOf(out + "/measurement.json"));
+    CHECK(after.at("excitation") == before.at("excitation"));
+    CHECK(after.at("driver").at("name") == "another");
+}
+
 TEST_CASE("rank keeps the model of each class as its document, which simulate plays", "[cli]")
 {
     const Scratch scratch;

@@ -309,6 +309,13 @@ TEST_CASE("An impulse response of REW becomes the frequency response from its ti
     refused(Kind::input, "expected a finite sample", [&] { responses(text + body + "nan\n"); });
     refused(Kind::input, "sample interval", [&] { responses("* Impulse Response data saved by REW\n" + body); });
     refused(Kind::usage, "--map", [&] { responses(text + body, "a.txt", mapped({"1=voltage"})); });
+    for (const auto ask :
+         {+[](ImportOptions& o) { o.removeMean = true; }, +[](ImportOptions& o) { o.minimumPhase = true; },
+          +[](ImportOptions& o) { o.as = responseNamed("impedance"); }}) {
+        ImportOptions options;
+        ask(options);
+        refused(Kind::usage, "leave --map", [&] { responses(text + body, "a.txt", options); });
+    }
 }
 
 TEST_CASE("Tables that cannot be understood for certain are refused", "[import]")

@@ -6,7 +6,9 @@
 
 #include <array>
 #include <atomic>
+#include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace excursion::plugin {
@@ -17,8 +19,18 @@ class VirtualDevice : public juce::AudioIODevice {
 public:
     /// As when it is unplugged and its driver says nothing.
     inline static std::atomic<bool> gone {false};
+    /// Its inputs are as loud as what is played, and nothing that was played.
+    inline static std::atomic<bool> scrambled {false};
+    inline static std::atomic<std::size_t> losesAt {0};  ///< samples after the first sound; 0: never; once
     /// The first of its two open outputs.
     inline static std::atomic<int> firstOutput {0};
+
+    /// What its first output has played since the last call, from the first sound on.
+    static std::vector<float> takePlayed()
+    {
+        const std::lock_guard lock(mutex);
+        return std::exchange(played, {});
+    }
 
     VirtualDevice() : AudioIODevice("Virtual loudspeaker", "Virtual") {}
     ~VirtualDevice() override { close(); }
@@ -62,6 +74,7 @@ public:
     juce::BigInteger getActiveInputChannels() const override { return bits(0, 3); }
     int getOutputLatencyInSamples() override { return 0; }
     int getInputLatencyInSamples() override { return 0; }
+    int getXRunCount() const noexcept override { return lost_; }
 
 private:
     static juce::BigInteger bits(int first, int count)
@@ -74,6 +87,7 @@ private:
     void run(const std::stop_token& stop)
     {
         SampledSpeaker speaker(48000.0);
+        juce::Random random(1);
         std::array<std::vector<float>, 3> in;
         std::array<std::vector<float>, 2> out;
         for (auto& channel : in)
@@ -84,15 +98,34 @@ private:
             const float* const ins[] {in[0].data(), in[1].data(), in[2].data()};
             float* const outs[] {out[0].data(), out[1].data()};
             callback_->audioDeviceIOCallbackWithContext(ins, 3, outs, 2, 256, {});
+            keep(out[0]);
             for (std::size_t n = 0; n < 256; ++n) {
                 const auto reading = speaker.next(16.0 * static_cast<double>(out[0][n]));
                 in[0][n] = static_cast<float>(reading.voltage / 16.0);
                 in[1][n] = static_cast<float>(reading.current / 4.0);
                 in[2][n] = static_cast<float>(reading.displacement / 8e-3);
+                if (scrambled)
+                    for (auto& channel : in)
+                        channel[n] *= random.nextBool() ? 0.9f : -0.9f;
             }
         }
     }
 
+    void keep(const std::vector<float>& block)
+    {
+        const std::lock_guard lock(mutex);
+        for (const float sample : block)
+            if (sample != 0.0f || !played.empty())
+                played.push_back(sample);
+        if (losesAt > 0 && played.size() >= losesAt) {
+            losesAt = 0;
+            ++lost_;
+        }
+    }
+
+    inline static std::mutex mutex;
+    inline static std::vector<float> played;
+    std::atomic<int> lost_ {0};  ///< times that samples were
     bool open_ = false;
     juce::AudioIODeviceCallback* callback_ = nullptr;
     std::jthread thread_;

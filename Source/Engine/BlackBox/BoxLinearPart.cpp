@@ -106,7 +106,8 @@ OwnLinearPart ownLinearPart(const BlackBox& box)
 }
 
 TargetForecast forecastTarget(const BlackBox& box, const Region& region, const Rest& rest,
-                              const BlackBoxRehearsal& rehearsal, const PredistortionControls& controls, double volts)
+                              const BlackBoxRehearsal& rehearsal, const PredistortionControls& controls, double volts,
+                              const Progress& progress)
 {
     ForecastSubject subject;
     subject.own = ownLinearPart(box);
@@ -153,7 +154,7 @@ TargetForecast forecastTarget(const BlackBox& box, const Region& region, const R
             return peak;
         };
     };
-    return forecastTarget(subject, controls, volts);
+    return forecastTarget(subject, controls, volts, progress);
 }
 
 }  // namespace excursion

@@ -16,6 +16,6 @@ OwnLinearPart ownLinearPart(const BlackBox&);
 /// its fit, peaks from the linearizer, and no excursion if the model gives none.
 /// Throws Error, see OwnLinearPart::require; (usage) if volts is not positive.
 TargetForecast forecastTarget(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&,
-                              const PredistortionControls&, double volts);
+                              const PredistortionControls&, double volts, const Progress& = {});
 
 }  // namespace excursion

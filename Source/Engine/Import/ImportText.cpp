@@ -111,10 +111,11 @@ Take importText(std::string text, const std::string& source, const ImportOptions
 {
     if (isRewImpulse(text)) {
         if (!options.columns.empty() || !options.responses.empty() || options.axis || options.sampleRate > 0
-            || options.from > 0 || options.to)
+            || options.from > 0 || options.to || options.as || options.minimumPhase || options.removeMean)
             refuseText(Kind::usage, source,
-                       "is an impulse response of REW, which has no columns to map and tells its sample rate; leave "
-                       "--map, --rate, --from and --to out.");
+                       "is an impulse response of REW, which has no columns to map, tells its sample rate and is a "
+                       "response of the pressure with its phase; leave --map, --rate, --from, --to, --as, "
+                       "--minimum-phase and --remove-mean out.");
         return rewImpulse(text, source);
     }
     const TextTable table(std::move(text), source);

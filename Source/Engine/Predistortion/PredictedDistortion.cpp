@@ -18,10 +18,11 @@ namespace {
 
 /// The last of so many periods of the acceleration, as a spectrum.
 std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, const std::vector<double>& period,
-                                          int periods)
+                                          int periods, const Progress& progress)
 {
     std::vector<double> out(period.size());
     for (int k = 0; k < periods; ++k) {
+        progress.at(0.0, "predicting the distortion");
         out = period;
         if (bend != nullptr)
             bend->process(out.data(), out.data(), out.size());
@@ -33,7 +34,7 @@ std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, 
 }  // namespace
 
 PredictedDistortion predictDistortion(const Model& model, const PredistortionControls& controls, double volts,
-                                      const RealTimeOptions& options)
+                                      const RealTimeOptions& options, const Progress& progress)
 {
     if (!(volts > 0.0))
         throw Error(Error::Kind::usage, "A prediction of distortion needs a voltage above zero.");
@@ -54,7 +55,8 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     constexpr int periods = 4;
     Speaker plain(model, options), played(model, options);
     Predistorter bend(model, options, controls);
-    const auto before = settled(plain, nullptr, period, periods), after = settled(played, &bend, period, periods);
+    const auto before = settled(plain, nullptr, period, periods, progress),
+               after = settled(played, &bend, period, periods, progress);
 
     PredictedDistortion result;
     result.displacement = plain.collectMeters().displacement;

@@ -3,6 +3,7 @@
 
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Predistortion/RealTime.h"
+#include "Engine/Progress.h"
 
 #include <vector>
 
@@ -20,8 +21,8 @@ struct PredictedDistortion {
 /// Plays an odd random-phase multisine, pink from a third of the resonance to 8 kHz (at most 0.17 of the sample rate),
 /// to the model and to the linearized model, and sums the power on the silent lines of the cone's acceleration.
 /// @param volts  peak of the multisine, V
-/// Throws Error, see requireRunnable; (usage) if volts is not positive.
+/// Throws Error, see requireRunnable; (usage) if volts is not positive; (cancelled).
 PredictedDistortion predictDistortion(const Model&, const PredistortionControls&, double volts,
-                                      const RealTimeOptions& = {});
+                                      const RealTimeOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

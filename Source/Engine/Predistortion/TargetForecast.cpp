@@ -155,7 +155,8 @@ TargetForecast::Peaks worstSine(const ForecastSubject& subject, const ForecastSu
 
 }  // namespace
 
-TargetForecast forecastTarget(const ForecastSubject& subject, const PredistortionControls& controls, double volts)
+TargetForecast forecastTarget(const ForecastSubject& subject, const PredistortionControls& controls, double volts,
+                              const Progress& progress)
 {
     if (!(volts > 0.0 && std::isfinite(volts)))
         throw Error(Error::Kind::usage, "What a target costs is told for a voltage above zero.");
@@ -202,7 +203,11 @@ TargetForecast forecastTarget(const ForecastSubject& subject, const Predistortio
 
     const auto signal = pink(subject, std::min(20.0, lower / 3.0), volts);
     const auto judge = [&](const Target& target, TargetForecast::Peaks& byPink, TargetForecast::Peaks& bySine) {
-        const auto play = subject.linearized(target);
+        const auto play = [linearized = subject.linearized(target), &progress](const std::vector<double>& sound,
+                                                                               std::size_t from, double level) {
+            progress.at(0.0, "forecasting the target");
+            return linearized(sound, from, level);
+        };
         byPink = judged(subject, play, controls, signal, signal.size() / 2);
         bySine = worstSine(subject, play, controls, lower / 4.0, std::min(4.0 * higher, 0.4 * subject.sampleRate),
                            volts);
@@ -217,7 +222,8 @@ TargetForecast forecastTarget(const ForecastSubject& subject, const Predistortio
     return told;
 }
 
-TargetForecast forecastTarget(const Model& model, const PredistortionControls& controls, double volts)
+TargetForecast forecastTarget(const Model& model, const PredistortionControls& controls, double volts,
+                              const Progress& progress)
 {
     requireRunnable(model, {rate, 1});
     ForecastSubject subject;
@@ -245,7 +251,7 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
             return driver->played(signal, from, level);
         };
     };
-    return forecastTarget(subject, controls, volts);
+    return forecastTarget(subject, controls, volts, progress);
 }
 
 TargetForecast withoutLengths(TargetForecast told)

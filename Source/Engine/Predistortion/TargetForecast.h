@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Predistortion/RealTime.h"
+#include "Engine/Progress.h"
 
 #include <complex>
 #include <functional>
@@ -61,9 +62,9 @@ struct TargetForecast {
 /// Linear curves have a closed form. Voltages with the correction come from playing to the linearizer, which takes some
 /// tenths of a second.
 /// @param volts  V (or N), peak
-/// Throws Error, see requireRunnable and OwnLinearPart::require; (usage) if volts is not positive.
-TargetForecast forecastTarget(const Model&, const PredistortionControls&, double volts);
-TargetForecast forecastTarget(const ForecastSubject&, const PredistortionControls&, double volts);
+/// Throws Error, see requireRunnable and OwnLinearPart::require; (usage) if volts is not positive; (cancelled).
+TargetForecast forecastTarget(const Model&, const PredistortionControls&, double volts, const Progress& = {});
+TargetForecast forecastTarget(const ForecastSubject&, const PredistortionControls&, double volts, const Progress& = {});
 
 /// A forecast that tells nothing in metres: of a model whose motion is a guess (ScaledModel::motionIsGuessed).
 TargetForecast withoutLengths(TargetForecast);

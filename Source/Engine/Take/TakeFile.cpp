@@ -19,6 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What a take or a plan is in a folder.
+struct Names {
+    const char *json, *wav;
+};
+constexpr Names takeNames {"measurement.json", "take.wav"}, planNames {"plan.json", "excitation.wav"};
+
 constexpr std::uintmax_t largestJson = 64u << 20;
 
 int wavRate(double sampleRate) { return std::max(1, static_cast<int>(std::lround(sampleRate))); }
@@ -86,8 +92,8 @@ SampleFormat sufficientFormat(const Measurement& measurement)
     return noisy ? SampleFormat::float32 : SampleFormat::float64;
 }
 
-void write(const Measurement& measurement, const fs::path& json, const std::string& audio, SampleFormat format,
-           const SweepExcitation* sweep = nullptr)
+void write(const Measurement& measurement, const fs::path& folder, const Names& names, SampleFormat format,
+           const std::optional<SweepExcitation>& sweep = {})
 {
     std::vector<std::vector<double>> samples;
     for (const auto& channel : measurement.channels) {
@@ -95,11 +101,10 @@ void write(const Measurement& measurement, const fs::path& json, const std::stri
         for (double& value : samples.back())
             value /= channel.fullScale;
     }
-    DraftFile wav(json.parent_path() / audio), header(json);
+    DraftFile wav(folder / names.wav), header(folder / names.json);
     writeWav(wav.path(), wavRate(measurement.sampleRate), samples, format);
-    header.write(
-        measurementJson(measurement, audio, sweep).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-        + "\n");
+    const auto document = measurementJson(measurement, names.wav, sweep ? &*sweep : nullptr);
+    header.write(document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     wav.publish();
     header.publish();
 }
@@ -111,8 +116,20 @@ fs::path headerOf(const fs::path& given)
     std::error_code error;
     if (!fs::is_directory(given, error))
         return endingOf(given) == ".json" ? given : fs::path();
-    const auto plan = given / "plan.json", json = given / "measurement.json";
+    const auto plan = given / planNames.json, json = given / takeNames.json;
     return !fs::exists(json, error) && fs::exists(plan, error) ? plan : json;
+}
+
+fs::path planHeaderOf(const fs::path& given)
+{
+    std::error_code error;
+    const auto plan = given / planNames.json;
+    return fs::exists(plan, error) ? plan : headerOf(given);
+}
+
+std::vector<fs::path> filesOfTake(const fs::path& folder)
+{
+    return {folder / takeNames.json, folder / takeNames.wav, folder / planNames.json, folder / planNames.wav};
 }
 
 SweepTake readOwnTake(const fs::path& json)
@@ -162,30 +179,28 @@ SweepTake readOwnTake(const fs::path& json)
     return {std::move(measurement), header.sweep};
 }
 
-void writeSweepTake(const SweepTake& sweepTake, const fs::path& folder)
+void writeSweepTake(const SweepTake& sweeps, const fs::path& folder)
 {
-    requireWritable(sweepTake.take);
-    write(sweepTake.take, folder / "measurement.json", "take.wav", sufficientFormat(sweepTake.take),
-          sweepTake.sweep ? &*sweepTake.sweep : nullptr);
+    requireWritable(sweeps.take);
+    write(sweeps.take, folder, takeNames, sufficientFormat(sweeps.take), sweeps.sweep);
 }
 
 void writeSweepPlan(const SweepTake& plan, const fs::path& folder)
 {
     requireWritable(plan.take);
-    write(plan.take, folder / "plan.json", "excitation.wav", SampleFormat::float32,
-          plan.sweep ? &*plan.sweep : nullptr);
+    write(plan.take, folder, planNames, SampleFormat::float32, plan.sweep);
 }
 
 void writeMeasurement(const Measurement& measurement, const fs::path& folder)
 {
     requireWritable(measurement);
-    write(measurement, folder / "measurement.json", "take.wav", sufficientFormat(measurement));
+    write(measurement, folder, takeNames, sufficientFormat(measurement));
 }
 
 void writePlan(const Measurement& plan, const fs::path& folder)
 {
     requireWritable(plan);
-    write(plan, folder / "plan.json", "excitation.wav", SampleFormat::float32);
+    write(plan, folder, planNames, SampleFormat::float32);
 }
 
 }  // namespace excursion

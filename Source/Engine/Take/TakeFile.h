@@ -4,12 +4,20 @@
 #include "Engine/Take/SweepTake.h"
 
 #include <filesystem>
+#include <vector>
 
 namespace excursion {
 
 /// The JSON that tells of a take of this format: of a folder its measurement.json, else its plan.json; a path that ends
 /// in .json as it is. Empty when it is neither: a file of another kind.
 std::filesystem::path headerOf(const std::filesystem::path&);
+
+/// The same of a plan, which a folder may hold beside the take that came of it: of a folder its plan.json, else its
+/// measurement.json.
+std::filesystem::path planHeaderOf(const std::filesystem::path&);
+
+/// The files that a take and a plan have in a folder.
+std::vector<std::filesystem::path> filesOfTake(const std::filesystem::path& folder);
 
 /// Reads such a JSON and the WAV that it names. Throws Error (input) with one sentence: a sample that is not finite, a
 /// channel that is missing, a size beyond the file's are all refused. A take that neither a voltage nor a force drives

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a session writes to files: what there is at the time of the order, which what comes meanwhile does not change.
+#include "Engine/Error.h"
+#include "Engine/Take/TakeFile.h"
+#include "Plugin/Session.h"
+#include "Report/Report.h"
+
+#include <filesystem>
+
+namespace excursion::plugin {
+
+void Session::saveReport(const std::string& path)
+{
+    const auto now = findings();
+    order(
+        [this, now, path](const Progress& progress) {
+            if (!now || now->file.ladder.rungs.empty())
+                throw Error(Error::Kind::usage,
+                            "There is no model of a take to report on: open a take that is fit for use first.");
+            progress.at(0.0, "drawing the report");
+            writeReport(now->file, path);
+            say("Wrote " + path + ".");
+        },
+        true);
+}
+
+void Session::saveTake(const std::string& folder)
+{
+    const auto now = findings();
+    order(
+        [this, now, folder](const Progress& progress) {
+            const auto* measurement = now ? now->take->inTime() : nullptr;
+            if (measurement == nullptr)
+                throw Error(Error::Kind::usage, "There is no take of time signals to save.");
+            progress.at(0.0, "writing the take");
+            writeMeasurement(*measurement, folder);
+            say("Wrote " + folder + ".");
+        },
+        true);
+}
+
+std::shared_ptr<const RecordingOptions> Session::refusedRecording() const
+{
+    const std::lock_guard lock(mutex_);
+    return refused_;
+}
+
+void Session::saveRecording(const std::string& folder)
+{
+    const auto recording = refusedRecording();
+    order(
+        [this, recording, folder](const Progress& progress) {
+            if (!recording || recording->sounds.empty() || !recording->plan)
+                throw Error(Error::Kind::usage, "There is no recording to save.");
+            progress.at(0.0, "writing the recording");
+            const auto place = std::filesystem::path(folder);
+            const auto& sound = recording->sounds.front().sound;
+            writePlan(*recording->plan, place / "plan");
+            writeWav(place / "recording.wav", sound.sampleRate, sound.channels, SampleFormat::float32);
+            say("Wrote " + folder + ": the recording, and the plan that it is of.");
+        },
+        true);
+}
+
+}  // namespace excursion::plugin

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The app measures a virtual loudspeaker on an audio device of its own.
+#include "Engine/Take/TakeFile.h"
+#include "Plugin/Clicks.h"
+#include "Plugin/Editor.h"
+#include "Plugin/VirtualDevice.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <thread>
+#include <vector>
+
+using namespace excursion;
+using plugin::Editor;
+using plugin::PageName;
+using plugin::Processor;
+
+namespace {
+
+/// The app with the virtual loudspeaker on its device.
+struct App {
+    explicit App(const char* levels)
+    {
+        plugin::VirtualDevice::gone = plugin::VirtualDevice::scrambled = false;
+        devices.addAudioDeviceType(std::make_unique<plugin::VirtualDeviceType>());
+        devices.setCurrentAudioDeviceType("Virtual", true);
+        juce::AudioDeviceManager::AudioDeviceSetup setup;
+        setup.inputDeviceName = setup.outputDeviceName = "Virtual loudspeaker";
+        setup.sampleRate = 48000.0;
+        setup.bufferSize = 256;
+        REQUIRE(devices.setAudioDeviceSetup(setup, true).isEmpty());
+        processor.prepareToPlay(48000.0, 256);
+        editor.emplace(processor, &devices);
+        panel().setRole(2, Quantity::displacement, 8e-3);
+        panel().setBand(20.0, 2000.0);
+        panel().setLevels(levels);
+    }
+
+    plugin::MeasuringPanel& panel() { return *editor->measure().measuring(); }
+    juce::String status() const { return editor->status(); }
+
+    /// Until the measurement has ended, or what is waited for.
+    void run(const std::function<bool()>& until = [] { return false; })
+    {
+        for (int k = 0; k < 4000 && panel().running() && !until(); ++k) {
+            editor->update();
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
+
+    juce::AudioDeviceManager devices;
+    Processor processor;
+    std::optional<Editor> editor;
+};
+
+float peakOf(const std::vector<float>& samples, std::size_t from, std::size_t to)
+{
+    float peak = 0.0f;
+    for (auto n = from; n < std::min(to, samples.size()); ++n)
+        peak = std::max(peak, std::abs(samples[n]));
+    return peak;
+}
+
+/// Where the last sound ends.
+std::size_t endOf(const std::vector<float>& samples)
+{
+    auto end = samples.size();
+    while (end > 0 && samples[end - 1] == 0.0f)
+        --end;
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect is found", "[plugin][slow]")
+{
+    App app("0.5 1.5 3.5");
+    auto& editor = *app.editor;
+    auto& processor = app.processor;
+    auto& panel = app.panel();
+    plugin::click(editor, "Start measuring");
+    REQUIRE(panel.running());
+    CHECK(processor.isSuspended());
+    plugin::picture(editor, "measuring");
+    editor.go(PageName::compare);  // it goes on, whatever page is seen
+    app.run();
+    REQUIRE(!panel.running());
+    CHECK(!processor.isSuspended());
+    plugin::settle(editor);
+    plugin::picture(editor, "measured");
+    const auto findings = processor.session().findings();
+    REQUIRE(findings);
+    for (const auto& problem : findings->report.problems)
+        UNSCOPED_INFO(problem.sentence);
+    REQUIRE(findings->report.fitForUse());
+    REQUIRE(!findings->file.ladder.rungs.empty());
+    CHECK(findings->file.ladder.verdict == Verdict::missingEffect);
+    CHECK(findings->file.ladder.rungs[0].diagnosis.ranking[0].effect == "stiffness");
+
+    SECTION("a channel is played where it is among those that are open")
+    {
+        const auto first = processor.session().findings();
+        struct Outputs {
+            Outputs() { plugin::VirtualDevice::firstOutput = 2; }
+            ~Outputs() { plugin::VirtualDevice::firstOutput = 0; }
+        } const outputs;
+        editor.go(PageName::measure);
+        panel.setOutput(3);
+        plugin::click(editor, "Start measuring");
+        CHECK(panel.running());
+        app.run();
+        REQUIRE(!panel.running());
+        plugin::settle(editor);
+        REQUIRE(processor.session().findings() != first);
+        CHECK(processor.session().findings()->report.fitForUse());
+    }
+    SECTION("a device that is gone without a word ends the measurement")
+    {
+        editor.go(PageName::measure);
+        plugin::click(editor, "Start measuring");
+        REQUIRE(panel.running());
+        plugin::VirtualDevice::gone = true;
+        app.run();
+        plugin::VirtualDevice::gone = false;
+        CHECK(!panel.running());
+        CHECK(!processor.isSuspended());
+        CHECK(editor.status().contains("no sound any more"));
+    }
+    SECTION("a take is not written over another")
+    {
+        const auto folder = juce::File::createTempFile("take");
+        REQUIRE(folder.createDirectory());
+        REQUIRE(folder.getChildFile("measurement.json").replaceWithText("mine"));
+        editor.measure().save(folder);
+        editor.update();
+        CHECK(editor.status().contains("holds a take or a recording already"));
+        processor.session().wait();
+        CHECK(folder.getChildFile("measurement.json").loadFileAsString() == "mine");
+        folder.deleteRecursively();
+    }
+    SECTION("what makes no sense is refused in a sentence")
+    {
+        editor.go(PageName::measure);
+        panel.setLevels("0.5 loud");
+        plugin::click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("loud"));
+        panel.setLevels("9");
+        plugin::click(editor, "Start measuring");
+        CHECK(!panel.running());
+        panel.setLevels("0.5 1,5");
+        plugin::click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("1,5"));
+        panel.setOutput(5);
+        panel.setLevels("0.5 1");
+        plugin::click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("Output 5 is not open"));
+        panel.setOutput(1);
+        panel.setLevels("1");
+        panel.setRole(2, Quantity::current, 1.0);
+        plugin::click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("current"));
+    }
+}
+
+TEST_CASE("The level of a measurement rises by itself, and Stop fades out", "[plugin][slow]")
+{
+    App app("1 3");
+    plugin::VirtualDevice::takePlayed();
+    plugin::click(*app.editor, "Start measuring");
+    app.run([&] { return app.panel().fraction() > 0.6; });
+    plugin::click(*app.editor, "Stop");
+    app.run();
+    CHECK(!app.panel().running());
+    CHECK(!app.processor.isSuspended());
+    CHECK(app.status().contains("stopped"));
+    CHECK(!app.processor.session().findings());
+    const auto played = plugin::VirtualDevice::takePlayed();
+    const auto end = endOf(played);
+    const auto begin = static_cast<std::size_t>(
+        std::find_if(played.begin(), played.end(), [](float s) { return s != 0.0f; }) - played.begin());
+    REQUIRE(end > begin + 4 * 48000);
+    const float full = peakOf(played, begin, end);
+    CHECK(peakOf(played, begin, begin + 24000) < 0.1f * full);
+    CHECK(peakOf(played, begin, begin + 2 * 48000) < 0.4f * full);
+    CHECK(peakOf(played, end - 100, end) < 0.1f * peakOf(played, end - 8000, end - 2000));
+}
+
+TEST_CASE("A limit ends a measurement of the app, and nothing is taken of it", "[plugin][slow]")
+{
+    App app("1 3");
+    app.panel().setLimit(2, "0.00015");
+    plugin::VirtualDevice::takePlayed();
+    plugin::click(*app.editor, "Start measuring");
+    app.run();
+    CHECK(app.status().contains("The displacement reached"));
+    CHECK(app.status().contains("limit of 0.00015 m"));
+    CHECK(!app.processor.session().status().busy);
+    CHECK(!app.processor.session().findings());
+    CHECK(!app.processor.isSuspended());
+    const auto played = plugin::VirtualDevice::takePlayed();
+    CHECK(static_cast<double>(peakOf(played, 0, played.size())) < 0.5 * 4.0 * 3.0 / 16.0);
+    app.panel().setLimit(2, "much");
+    plugin::click(*app.editor, "Start measuring");
+    CHECK(!app.panel().running());
+    CHECK(app.status().contains("much"));
+}
+
+TEST_CASE("Where a device loses samples the plan is played again, and the take says so", "[plugin][slow]")
+{
+    App app("1");
+    plugin::VirtualDevice::takePlayed();
+    plugin::VirtualDevice::losesAt = 6 * 48000;  // amid the plan
+    plugin::click(*app.editor, "Start measuring");
+    app.run();
+    plugin::settle(*app.editor);
+    const auto findings = app.processor.session().findings();
+    REQUIRE(findings);
+    CHECK(findings->report.fitForUse());
+    REQUIRE(!findings->remarks.empty());
+    CHECK(juce::String(findings->remarks.front()).contains("played again"));
+}
+
+TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
+{
+    App app("1");
+    plugin::VirtualDevice::scrambled = true;
+    plugin::click(*app.editor, "Start measuring");
+    app.run();
+    plugin::VirtualDevice::scrambled = false;
+    auto& session = app.processor.session();
+    session.wait();
+    app.editor->update();
+    REQUIRE(session.status().trouble);
+    CHECK(app.status().contains("Save the recording"));
+    REQUIRE(session.refusedRecording());
+    const auto folder = juce::File::createTempFile("refused");
+    app.editor->measure().save(folder);
+    session.wait();
+    const auto place = std::filesystem::path(folder.getFullPathName().toStdString());
+    CHECK(readWav(place / "recording.wav").channels.size() == 3);
+    CHECK(readOwnTake(headerOf(place / "plan")).take.input().samples.size()
+          == session.refusedRecording()->plan->input().samples.size());
+    app.editor->update();
+    app.editor->measure().save(folder);
+    app.editor->update();
+    CHECK(app.status().contains("holds a take or a recording already"));
+    folder.deleteRecursively();
+}
