@@ -15,7 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto pollEvery = std::chrono::milliseconds(10);
-constexpr double stopPatience = 0.5;  // s for the fade
+constexpr double stopPatience = 0.5;  // s for the fade, beside the latency
+constexpr double leastSweeps = 10.0;  // of a rise: 4 dB from one to the next
 constexpr auto reportEvery = std::chrono::milliseconds(100);
 
 std::string inputText(const WatchedInput& watched)
@@ -57,16 +58,18 @@ public:
         const auto begun = Clock::now();
         auto moved = begun, reported = begun - reportEvery;
         auto frames = procedure_.frames();
+        double patience = options.patience;
         while (!procedure_.ended()) {
             std::this_thread::sleep_for(pollEvery);
             procedure_.readRecorded(channels);
-            if (options.stop.stop_requested())
-                procedure_.stop();
-            const double patience = options.stop.stop_requested() ? std::min(options.patience, stopPatience)
-                                                                  : options.patience;
             const auto now = Clock::now();
             if (const auto present = procedure_.frames(); present != frames) {
                 frames = present;
+                moved = now;
+            }
+            if (options.stop.stop_requested() && patience == options.patience) {
+                procedure_.stop();
+                patience = std::min(patience, stopPatience + 2.0 * options.stream.latency);
                 moved = now;
             }
             if (!procedure_.ended() && (!stream_.running() || now - moved > std::chrono::duration<double>(patience)))
@@ -127,25 +130,35 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
     return "";
 }
 
-ProcedureOptions procedureFor(const Measurement& plan, std::size_t period, double fullScale)
+ProcedureOptions procedureFor(const Measurement& plan, const std::optional<SweepExcitation>& sweep, double fullScale)
 {
     ProcedureOptions options;
     options.sampleRate = plan.sampleRate;
     const auto& volts = plan.input().samples;
-    options.loudLength = period;
-    double peak = 0.0;
-    for (std::size_t n = 0; n < volts.size(); ++n) {
-        options.sound.push_back(static_cast<float>(volts[n] / fullScale));
-        if (std::abs(volts[n]) > peak) {
-            peak = std::abs(volts[n]);
-            options.loudBegin = std::min(n / options.loudLength * options.loudLength,
-                                         volts.size() - std::min(options.loudLength, volts.size()));
-        }
-    }
+    const auto played = [fullScale](double v) { return static_cast<float>(v / fullScale); };
+    std::transform(volts.begin(), volts.end(), std::back_inserter(options.sound), played);
+    const auto loudest = std::max_element(volts.begin(), volts.end(),
+                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const double peak = loudest != volts.end() ? std::abs(*loudest) : 0.0;
     if (!(peak <= fullScale) || !(peak > 0.0))
         throw Error(Error::Kind::data, "The plan peaks at " + figure(peak / fullScale, "%.4g")
                                            + " of the output's full scale; what can be played has more than 0 and at "
                                              "most 1.");
+    if (sweep) {
+        auto quick = *sweep;
+        quick.seconds = std::min(quick.seconds, std::max(1.0, 20.0 / quick.bandLow));
+        quick.fadeIn = std::min(quick.fadeIn, 0.1 * quick.seconds);
+        quick.fadeOut = std::min(quick.fadeOut, 0.1 * quick.seconds);
+        const auto once = quick.sweep(plan.sampleRate, quick.levels.size() - 1).samples();
+        std::transform(once.begin(), once.end(), std::back_inserter(options.loudest), played);
+        options.rise = std::max(options.rise, leastSweeps * static_cast<double>(once.size()) / plan.sampleRate);
+    } else {
+        const auto period = std::min(volts.size(), static_cast<std::size_t>(plan.excitation.value().period));
+        const auto place = static_cast<std::size_t>(loudest - volts.begin()) / period * period,
+                   begin = std::min(place, volts.size() - period);
+        options.loudest.assign(options.sound.begin() + static_cast<std::ptrdiff_t>(begin),
+                               options.sound.begin() + static_cast<std::ptrdiff_t>(begin + period));
+    }
     return options;
 }
 
@@ -153,14 +166,15 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
 {
     Measured result;
     std::string lost;
+    bool risen = false;  // the limits have been met, or not
     for (int attempt = 1;; ++attempt) {
         if (attempt > options.attempts)
             throw Error(Error::Kind::input,
                         lost + " It was so in " + std::to_string(options.attempts)
                             + " attempts: close other programs, or let the device have more latency.");
         auto procedureOptions = options.procedure;
-        if (attempt > 1)
-            procedureOptions.rise = 0.0;  // the limits have been met, or not, by the first attempt
+        if (risen)
+            procedureOptions.rise = 0.0;
         auto streamOptions = options.stream;
         streamOptions.sampleRate = procedureOptions.sampleRate;
         streamOptions.inputs = procedureOptions.recorded;
@@ -191,7 +205,8 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
                                          + " is no louder at full level than in silence: is it connected?");
         if (ending.kind == Ending::Kind::broken || ending.kind == Ending::Kind::overrun) {
             lost = sentenceOf(ending, procedureOptions);
-            result.remarks.push_back(lost + " All of the plan was played again.");
+            risen = risen || isRecorded(ending.stage);
+            result.remarks.push_back(lost + " All of it was played again.");
             continue;
         }
         if (ending.kind != Ending::Kind::complete)

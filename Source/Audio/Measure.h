@@ -3,8 +3,10 @@
 
 #include "Audio/Procedure.h"
 #include "Audio/Stream.h"
+#include "Engine/Take/SweepExcitation.h"
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -37,7 +39,8 @@ struct Measured {
 
 /// Plays and records through a device, and once more, without the rise, where samples were lost on the way. The device
 /// is closed when it returns, or throws
-///     Error (cancelled) when it was told to stop, after the fade, for which a device has half a second;
+///     Error (cancelled) when it was told to stop, after the fade, for which a device has half a second and its
+///     latency;
 ///     Error (data) when a limit was reached, an input clipped or nothing was heard;
 ///     Error (input) when the device does not open, is gone, all inputs froze, or samples are lost at every attempt.
 Measured measure(System&, const Device&, const MeasureOptions&);
@@ -45,10 +48,11 @@ Measured measure(System&, const Device&, const MeasureOptions&);
 /// What ended a procedure before its end, in a sentence; for all kinds but `complete` and `stopped`.
 std::string sentenceOf(const Ending&, const ProcedureOptions&);
 
-/// What a plan plays, and the loudest of its periods, where its largest peak is, for the rise. Inputs and outputs are
-/// still to be told. Throws Error (data) where nothing would sound, or more than the output can give.
-/// @param period     samples; of a sweep with the silence behind it
+/// What a plan plays and rises by: the period with the largest peak, or a quick sweep at the highest level, ten times
+/// at least, as a long one would come to its low notes once. Inputs and outputs are still to be told. Throws Error
+/// (data) where nothing would sound, or more than the output can give.
+/// @param plan       of planExcitation() or, with `sweep`, of planSweep()
 /// @param fullScale  V at an output sample of 1.0
-ProcedureOptions procedureFor(const Measurement& plan, std::size_t period, double fullScale);
+ProcedureOptions procedureFor(const Measurement& plan, const std::optional<SweepExcitation>& sweep, double fullScale);
 
 }  // namespace excursion::audio

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Audio/Procedure.h"
 
+#include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Validity.h"
 
@@ -53,10 +54,13 @@ bool ProcedureOptions::isValid(std::string* reason) const
 {
     if (!(std::isfinite(sampleRate) && sampleRate > 0))
         return refuse(reason, "A measurement needs a sample rate above zero.");
-    if (sound.empty() || std::any_of(sound.begin(), sound.end(), [](float s) { return !(std::abs(s) <= 1.0f); }))
+    const auto playable = [](const std::vector<float>& samples) {
+        return std::all_of(samples.begin(), samples.end(), [](float s) { return std::abs(s) <= 1.0f; });
+    };
+    if (sound.empty() || !playable(sound))
         return refuse(reason, "What is played must have samples, all of them within -1 and 1.");
-    if (rise > 0 && (loudLength == 0 || loudBegin > sound.size() || loudLength > sound.size() - loudBegin))
-        return refuse(reason, "The loudest period must lie within what is played.");
+    if (rise > 0 && (loudest.empty() || !playable(loudest)))
+        return refuse(reason, "A rise needs a loudest period, all of it within -1 and 1.");
     if (recorded < 1 || inputs.empty() || outputs.empty()
         || std::any_of(outputs.begin(), outputs.end(), [](int o) { return o < 0; }))
         return refuse(reason, "A measurement needs an input and an output.");
@@ -65,6 +69,14 @@ bool ProcedureOptions::isValid(std::string* reason) const
             return refuse(reason, "An input is watched that is not recorded.");
         if (watched.limit && !(std::isfinite(*watched.limit) && *watched.limit > 0))
             return refuse(reason, "A limit must be a number above zero.");
+        if (watched.limit && !watched.quantity)
+            return refuse(reason, "A limit is one of a quantity.");
+        // an input clips at its full scale; a displacement counts from rest, which may be at the other end
+        const double most = std::abs(watched.factor) * (watched.quantity == Quantity::displacement ? 2.0 : 1.0);
+        if (watched.limit && !(*watched.limit < most))
+            return refuse(reason, "The limit of the " + std::string(name(*watched.quantity)) + " is "
+                                      + figure(*watched.limit, "%.4g") + " " + std::string(siUnit(*watched.quantity))
+                                      + ", which its input cannot reach; give one below " + figure(most, "%.4g") + ".");
     }
     for (const double seconds : {listen, rise, pause, tail, fade, ringSeconds})
         if (!(seconds >= 0 && seconds <= 3600))
@@ -92,7 +104,7 @@ std::size_t Procedure::lengthOf(Stage stage) const
     switch (stage) {
     case Stage::listening: return std::max<std::size_t>(1, framesOf(options_.listen, options_.sampleRate));
     case Stage::rising:
-        return riseLength_ + framesOf(holdSeconds, options_.sampleRate) + options_.loudLength + fadeLength_;
+        return riseLength_ + framesOf(holdSeconds, options_.sampleRate) + options_.loudest.size() + fadeLength_;
     case Stage::pausing: return framesOf(options_.pause, options_.sampleRate);
     case Stage::playing: return options_.sound.size();
     case Stage::trailing: return framesOf(options_.tail, options_.sampleRate);
@@ -140,7 +152,7 @@ float Procedure::soundOf(Stage stage, std::size_t n) const
     if (left <= fadeLength_)
         gain *= 0.5
                 - 0.5 * std::cos(std::numbers::pi * static_cast<double>(left - 1) / static_cast<double>(fadeLength_));
-    return static_cast<float>(gain) * options_.sound[options_.loudBegin + n % options_.loudLength];
+    return static_cast<float>(gain) * options_.loudest[n % options_.loudest.size()];
 }
 
 float Procedure::next()
@@ -228,7 +240,7 @@ void Procedure::closeWindow()
 {
     bool any = false;
     for (std::size_t k = 0; k < watches_.size(); ++k) {
-        const double power = watches_[k].window / static_cast<double>(options_.loudLength);
+        const double power = watches_[k].window / static_cast<double>(options_.loudest.size());
         // as far as one sample of 24 bits, where the silence was perfect
         heard_[k] = std::sqrt(power / std::max(watches_[k].power, 1e-14));
         any = any || heard_[k] > heardRatio;
@@ -252,10 +264,10 @@ void Procedure::advance()
     if (now_ == Stage::rising) {
         // the last window ends where the fade begins
         const auto toFade = lengthOf(Stage::rising) - fadeLength_;
-        if (at_ <= toFade && (toFade - at_) % options_.loudLength == 0) {
-            const auto begin = at_ >= options_.loudLength ? at_ - options_.loudLength : 0;
+        if (at_ <= toFade && (toFade - at_) % options_.loudest.size() == 0) {
+            const auto begin = at_ >= options_.loudest.size() ? at_ - options_.loudest.size() : 0;
             windowGain_ = gainAt(begin);
-            if (at_ >= options_.loudLength)
+            if (at_ >= options_.loudest.size())
                 closeWindow();
             else
                 for (auto& watch : watches_)
@@ -287,7 +299,7 @@ void Procedure::process(const Block& block) noexcept
 {
     if (block.broken || block.in == nullptr) {
         breaks_.fetch_add(1, std::memory_order_relaxed);
-        if (isRecorded(now_))
+        if (isRecorded(now_) || block.in == nullptr)  // without inputs no limit can be kept
             end(Ending::Kind::broken);
     }
     if (stopAsked_.load(std::memory_order_relaxed))

@@ -46,10 +46,9 @@ struct Ending {
 };
 
 struct ProcedureOptions {
-    double sampleRate = 0.0;   ///< Hz
-    std::vector<float> sound;  ///< what is played, -1 .. 1
-    /// its loudest period, which the rise repeats
-    std::size_t loudBegin = 0, loudLength = 0;
+    double sampleRate = 0.0;     ///< Hz
+    std::vector<float> sound;    ///< what is played, -1 .. 1
+    std::vector<float> loudest;  ///< a period as loud as what is loudest in it, which the rise repeats
     std::vector<WatchedInput> inputs;
     std::vector<int> outputs {0};                                           ///< that play, from 0
     int recorded = 1;                                                       ///< inputs 0 .. recorded - 1 are recorded
@@ -71,9 +70,9 @@ struct ProcedureOptions {
 ///  - ended: silence.
 ///
 /// From anywhere it goes to fading, a cosine of `fade` seconds over what is being played, and then ended, when it is
-/// told to stop, an input reaches its limit or clips, nothing arrives though the rise has come within 12 dB of its end
-/// (no input is twice as loud, rms over a period, as in silence), or, while the sound is played, samples are lost or no
-/// input moves for half a second.
+/// told to stop, an input reaches its limit, clips or gives nothing, nothing arrives though the rise has come within 12
+/// dB of its end (no input is twice as loud, rms over a period, as in silence), or, while the sound is played, samples
+/// are lost or no input moves for half a second.
 ///
 /// process() is for the thread of the device: it neither allocates nor locks nor calls the system.
 class Procedure : public Client {

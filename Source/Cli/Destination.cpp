@@ -7,6 +7,7 @@
 
 #include <cctype>
 #include <filesystem>
+#include <vector>
 
 #ifdef _WIN32
 #include <io.h>
@@ -71,14 +72,14 @@ void requireFolderPlace(const std::string& folder)
 
 void requireApart(const std::string& read, const std::string& written)
 {
-    const auto filesOf = [](const std::string& place) {
-        auto files = filesOfTake(place);
-        files.emplace_back(place);
-        return files;
-    };
+    std::vector<fs::path> reads {read}, writes {written};
+    for (const auto& files : {filesOfTake(read), filesOfPlan(read)})
+        reads.insert(reads.end(), files.begin(), files.end());
+    for (const auto& file : filesOfTake(written))
+        writes.push_back(file);
     std::error_code none;
-    for (const auto& one : filesOf(read))
-        for (const auto& other : filesOf(written))
+    for (const auto& one : reads)
+        for (const auto& other : writes)
             if (fs::equivalent(one, other, none))
                 throw Error(Error::Kind::usage,
                             "'" + read + "' would be overwritten; give what is written another name.");

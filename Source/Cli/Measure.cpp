@@ -107,9 +107,8 @@ audio::ProcedureOptions procedureOf(const MeasureArguments& arguments, const Rec
     const auto& plan = *options.plan;
     if (!options.sweep)
         periodsOf(plan);  // refuses what is no plan
-    const auto period = options.sweep ? options.sweep->blockSamples(plan.sampleRate) : plan.excitation->period;
-    auto procedure = audio::procedureFor(plan, static_cast<std::size_t>(period), plan.input().fullScale);
-    procedure.rise = arguments.rise;
+    auto procedure = audio::procedureFor(plan, options.sweep, plan.input().fullScale);
+    procedure.rise = std::max(arguments.rise, options.sweep ? procedure.rise : 0.0);
     procedure.recorded = 1;
     for (const auto& channel : inputsOf(options)) {
         audio::WatchedInput watched;

@@ -119,14 +119,18 @@ void Editor::update()
     const auto status = owner_.session().status();
     const auto rehearsal = owner_.rehearsing().status();
     auto* measuring = measure_.measuring();
-    if (measuring != nullptr && measuring->running() && pages_[page_] != &measure_)
-        measuring->tick();  // it goes on, whatever page is seen
     const bool measures = measuring != nullptr && measuring->running(),
                busy = status.busy || rehearsal.busy || measures;
     fraction_ = measures ? measuring->fraction() : status.busy ? status.fraction : rehearsal.fraction;
     progress_.setVisible(busy);
     cancel_.setVisible(busy);
-    if (status.words != said_) {
+    const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes();
+    if (status.failedSaves != failedSaves_) {  // which what comes after it is not to hide at once
+        failedSaves_ = status.failedSaves;
+        tell(words(status.notSaved), true);
+        said_ = status.words;
+        heldUntil_ = now + toldFor;
+    } else if (status.words != said_ && now > heldUntil_) {
         said_ = status.words;
         tell(words(said_), status.trouble);
     }
@@ -159,6 +163,8 @@ void Editor::update()
     undo_.setTooltip(history_.canUndo() ? "Ctrl+Z: " + history_.nextBack() : juce::String("Ctrl+Z"));
     redo_.setTooltip(history_.canRedo() ? "Ctrl+Shift+Z: " + history_.nextAgain() : juce::String("Ctrl+Shift+Z"));
     pages_[page_]->tick();
+    if (measuring != nullptr && pages_[page_] != &measure_)
+        measuring->tick();  // it goes on, whatever page is seen
     ring_.follow();
 }
 

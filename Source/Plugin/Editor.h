@@ -101,7 +101,10 @@ private:
     LinearizePage linearize_ {*this};
     const std::array<Page*, 5> pages_ {&measure_, &compare_, &diagnose_, &identify_, &linearize_};
     std::size_t page_ = 0;
-    std::uint64_t seen_ = 0;                    ///< version of the findings that the pages show
+    std::uint64_t seen_ = 0;                ///< version of the findings that the pages show
+    static constexpr double toldFor = 6.0;  ///< s, that something was not saved
+    double heldUntil_ = 0.0;
+    std::uint64_t failedSaves_ = 0;             ///< of the session, that were told
     std::string said_;                          ///< of the session's status
     std::string standstill_;                    ///< of the processor, as it was told
     std::uint64_t rehearsed_ = 0;               ///< version of the rehearsal that was told

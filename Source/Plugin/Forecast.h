@@ -12,8 +12,8 @@
 
 namespace excursion::plugin {
 
-/// Keeps an answer that takes long up to date on a thread of its own; only the latest question is answered, and one
-/// that it follows is told to stop. Not for the audio thread.
+/// Keeps an answer that takes long up to date on a thread of its own; of the questions that wait, only the
+/// latest is answered. The destructor stops what is under way. Not for the audio thread.
 template <class Answer>
 class Forecast {
 public:
@@ -33,7 +33,6 @@ public:
     {
         const std::lock_guard lock(mutex_);
         open_ = std::move(question);
-        stop_.request_stop();
         changed_.notify_all();
     }
 

@@ -119,10 +119,10 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
     };
     save_.onClick = [this] {
         const auto home = juce::File::getSpecialLocation(juce::File::userHomeDirectory);
-        const bool refused = session().refusedRecording() != nullptr;
+        const bool recording = session().recordingWithoutTake() != nullptr;
         chooser_ = std::make_unique<juce::FileChooser>(
-            refused ? "Save the recording as a folder" : "Save the take as a folder",
-            home.getChildFile(refused ? "recording" : "take").getNonexistentSibling());
+            recording ? "Save the recording as a folder" : "Save the take as a folder",
+            home.getChildFile(recording ? "recording" : "take").getNonexistentSibling());
         chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
             if (chosen.getResult() != juce::File())
                 save(chosen.getResult());
@@ -176,7 +176,7 @@ void MeasurePage::save(const juce::File& folder)
     if (holds)
         window_.tell("\"" + folder.getFileName() + "\" holds a take or a recording already: choose another name.",
                      true);
-    else if (session().refusedRecording())
+    else if (session().recordingWithoutTake())
         session().saveRecording(path);
     else
         session().saveTake(path);
@@ -184,9 +184,9 @@ void MeasurePage::save(const juce::File& folder)
 
 void MeasurePage::tick()
 {
-    const bool refused = session().refusedRecording() != nullptr;
-    save_.setButtonText(refused ? "Save the recording..." : "Save the take...");
-    save_.setEnabled(refused || taken_);
+    const bool recording = session().recordingWithoutTake() != nullptr;
+    save_.setButtonText(recording ? "Save the recording..." : "Save the take...");
+    save_.setEnabled(recording || taken_);
     if (measuring_)
         measuring_->tick();
 }

@@ -12,7 +12,7 @@ Measuring::Measuring(std::unique_ptr<OpenDevice> device, Measurement plan, std::
     : device_(std::move(device)), plan_(std::move(plan)), roles_(std::move(roles))
 {
     audio::MeasureOptions options;
-    options.procedure = audio::procedureFor(plan_, static_cast<std::size_t>(plan_.excitation->period), fullScale);
+    options.procedure = audio::procedureFor(plan_, {}, fullScale);
     options.procedure.recorded = static_cast<int>(roles_.size());
     for (std::size_t k = 0; k < roles_.size(); ++k)
         options.procedure.inputs.push_back(
@@ -52,6 +52,7 @@ Recorded Measuring::recorded()
 {
     auto measured = result_.get();
     Recorded recorded;
+    recorded.device = device_->description();
     recorded.remarks = std::move(measured.remarks);
     recorded.recording.plan = std::move(plan_);
     Wav sound {static_cast<int>(std::lround(recorded.recording.plan->sampleRate)), {}};

@@ -26,6 +26,7 @@ struct InputRole {
 /// What was measured, to be laid beside its plan.
 struct Recorded {
     RecordingOptions recording;
+    std::string device;
     std::vector<std::string> remarks;
 };
 

@@ -2,6 +2,7 @@
 #include "Plugin/MeasuringPanel.h"
 
 #include "Engine/Error.h"
+#include "Engine/Import/ChannelMap.h"
 #include "Plots/Words.h"
 #include "Plugin/Look.h"
 
@@ -110,7 +111,7 @@ void MeasuringPanel::relabel(Input& input)
     const auto unit = q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) : juce::String();
     input.unit.setText(q >= 0 ? unit + " full scale" : juce::String(), juce::dontSendNotification);
     input.limit.setTooltip(
-        q >= 0 ? "What it must not reach, in " + unit
+        q >= 0 ? "What it must not reach, in " + unit + " or with its unit"
                      + (quantities[static_cast<std::size_t>(q)] == Quantity::displacement ? " from where it rests" : "")
                      + ": the measurement fades out and ends. Empty: no limit"
                : juce::String());
@@ -171,8 +172,13 @@ std::vector<InputRole> MeasuringPanel::roles() const
             if (other.quantity == quantity)
                 throw Error(Error::Kind::usage, "Two inputs are the " + std::string(name(quantity)) + ": choose one.");
         InputRole role {k, quantity, entered(input.fullScale.getText(), "calibration"), {}};
-        if (input.limit.getText().trim().isNotEmpty())
-            role.limit = entered(input.limit.getText(), "limit");
+        if (const auto limit = input.limit.getText().trim().toStdString(); !limit.empty()) {
+            role.limit = amountOf(quantity, limit);
+            if (!role.limit || !(*role.limit > 0.0))
+                throw Error(Error::Kind::usage, "\"" + limit + "\" is no limit of the " + std::string(name(quantity))
+                                                    + ": enter a number in " + std::string(siUnit(quantity))
+                                                    + ", or one with its unit, above zero.");
+        }
         result.push_back(role);
     }
     return result;
@@ -220,12 +226,15 @@ void MeasuringPanel::start()
             throw Error(
                 Error::Kind::usage,
                 "Choose an input for the voltage at the terminals and at least one other, such as the current.");
+        recorded_.reset();
+        window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
         measuring_ = std::make_unique<Measuring>(std::make_unique<OpenDevice>(devices_, inputs, output),
                                                  std::move(plan), wanted, fullScale);
-        window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
         go_.setButtonText("Stop");
+        device_.setEnabled(false);  // its test tone would be heard, and its dialog hide Stop
         window_.tell("Measuring. Do not touch the loudspeaker.", false);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
+        end();
         window_.tell(words(error.what()), true);
     }
 }
@@ -235,6 +244,7 @@ void MeasuringPanel::end()
     measuring_ = nullptr;
     window_.processor().suspendProcessing(false);
     go_.setButtonText("Start measuring");
+    device_.setEnabled(true);
     preview();
 }
 
@@ -252,34 +262,36 @@ void MeasuringPanel::tick()
                                   + juce::String(device->getActiveInputChannels().countNumberOfSetBits()) + " inputs"
                             : juce::String("no device is open"),
                         juce::dontSendNotification);
-    if (!measuring_)
-        return;
-    if (!measuring_->ended())
+    if (measuring_ && !measuring_->ended())
         showProgress();
-    else if (!measuring_->stopped() && window_.processor().session().status().busy)
-        // A fit that is under way is not to end for it.
-        preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
-    else
+    else if (measuring_)
         take();
+    if (!recorded_)
+        return;
+    if (window_.processor().session().status().busy) {  // a fit that is under way is not to end for it
+        preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
+        return;
+    }
+    window_.processor().session().open(std::move(recorded_->recording), "Measured with " + recorded_->device,
+                                       std::move(recorded_->remarks));
+    recorded_.reset();
+    preview();
 }
 
 /// What came of a measurement that has ended.
 void MeasuringPanel::take()
 {
     try {
-        auto done = measuring_->recorded();
+        auto recorded = measuring_->recorded();
+        const bool stopped = measuring_->stopped();
         end();
-        auto* device = devices_.getCurrentAudioDevice();
-        window_.processor().session().open(
-            std::move(done.recording),
-            "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")),
-            std::move(done.remarks));
-    } catch (const Error& error) {
-        end();
-        if (error.kind() == Error::Kind::cancelled)
+        if (stopped)
             window_.tell("The measurement was stopped.", false);
         else
-            window_.tell(words(error.what()), true);
+            recorded_ = std::move(recorded);
+    } catch (const std::exception& error) {
+        end();
+        window_.tell(words(error.what()), true);
     }
 }
 

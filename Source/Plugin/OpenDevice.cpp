@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -15,12 +16,16 @@ public:
     explicit Connection(OpenDevice& device) : device_(device) {}
     ~Connection() override { stop(); }
 
-    void start(audio::Client& client) override { device_.client_ = &client; }
+    void start(audio::Client& client) override
+    {
+        device_.silent_ = std::lround(device_.buffered_ * device_.device_.rates.front());
+        device_.client_ = &client;
+    }
 
     void stop() override
     {
         device_.client_ = nullptr;
-        while (device_.inside_)  // no longer than a piece takes
+        while (device_.inside_)  // no longer than a block takes
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 
@@ -32,7 +37,7 @@ private:
 };
 
 OpenDevice::OpenDevice(juce::AudioDeviceManager& manager, std::vector<int> inputs, int output)
-    : manager_(manager), inputs_(std::move(inputs)), output_(output), nothing_(piece, 0.0f), in_(inputs_.size())
+    : manager_(manager), inputs_(std::move(inputs)), output_(output), in_(inputs_.size())
 {
     if (auto* device = manager_.getCurrentAudioDevice()) {
         device_.backend = device->getTypeName().toStdString();
@@ -40,6 +45,9 @@ OpenDevice::OpenDevice(juce::AudioDeviceManager& manager, std::vector<int> input
         device_.inputs = device->getActiveInputChannels().countNumberOfSetBits();
         device_.outputs = device->getActiveOutputChannels().countNumberOfSetBits();
         device_.rates = {device->getCurrentSampleRate()};
+        const int latency = std::max(0, device->getOutputLatencyInSamples())
+                            + std::max(0, device->getInputLatencyInSamples());
+        buffered_ = (device->getCurrentBufferSizeSamples() + latency) / device->getCurrentSampleRate();
     }
     manager_.addAudioCallback(this);
 }
@@ -57,7 +65,8 @@ void OpenDevice::audioDeviceAboutToStart(juce::AudioIODevice* device)
 {
     counting_ = device;
     lost_ = device->getXRunCount();
-    // a device that was stopped does not come back within a measurement, at whatever rate
+    called_ = 0.0;
+    // a device that was stopped does not come back within a measurement: its rate and its channels may be others
     running_ = !std::exchange(begun_, true) && device_.rates == std::vector<double> {device->getCurrentSampleRate()};
 }
 
@@ -67,33 +76,39 @@ void OpenDevice::audioDeviceStopped()
     counting_ = nullptr;
 }
 
+/// Whether samples were lost before this block.
+bool OpenDevice::lostSamples()
+{
+    const int lost = counting_ != nullptr ? counting_->getXRunCount() : 0;
+    const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes(), before = std::exchange(called_, now);
+    return std::exchange(lost_, lost) != lost || (before > 0.0 && now - before > buffered_);
+}
+
 void OpenDevice::audioDeviceIOCallbackWithContext(const float* const* in, int inputs, float* const* out, int outputs,
                                                   int length, const juce::AudioIODeviceCallbackContext&)
 {
     for (int c = 0; c < outputs; ++c)
         if (out[c] != nullptr)
             std::fill_n(out[c], length, 0.0f);
-    const int lost = counting_ != nullptr ? counting_->getXRunCount() : 0;
-    bool broken = std::exchange(lost_, lost) != lost;
+    const bool lost = lostSamples();
     inside_ = true;
-    if (auto* const client = client_.load(); client != nullptr && output_ < outputs && out[output_] != nullptr) {
-        for (int from = 0; from < length; from += piece) {
-            bool all = true;
-            for (std::size_t k = 0; k < inputs_.size(); ++k) {
-                const auto* samples = inputs_[k] < inputs ? in[inputs_[k]] : nullptr;
-                all = all && samples != nullptr;
-                in_[k] = samples != nullptr ? samples + from : nothing_.data();
-            }
-            float* const played = out[output_] + from;
-            audio::Block block;
-            block.in = in_.data();
-            block.out = &played;
-            block.inputs = in_.size();
-            block.outputs = 1;
-            block.frames = static_cast<std::size_t>(std::min(piece, length - from));
-            block.broken = std::exchange(broken, false) || !all;
-            client->process(block);
-        }
+    auto* const client = client_.load();
+    if (client != nullptr && silent_.load() > 0) {
+        silent_ -= length;
+    } else if (client != nullptr && running_ && output_ < outputs && out[output_] != nullptr) {
+        bool all = true;
+        for (const int input : inputs_)
+            all = all && input < inputs && in[input] != nullptr;
+        for (std::size_t k = 0; all && k < inputs_.size(); ++k)
+            in_[k] = in[inputs_[k]];
+        audio::Block block;
+        block.in = all ? in_.data() : nullptr;
+        block.out = &out[output_];
+        block.inputs = in_.size();
+        block.outputs = 1;
+        block.frames = static_cast<std::size_t>(length);
+        block.broken = lost || !all;
+        client->process(block);
     }
     inside_ = false;
 }

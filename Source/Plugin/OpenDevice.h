@@ -10,8 +10,10 @@
 namespace excursion::plugin {
 
 /// The audio device that a manager has open, for audio::measure(). It belongs to the manager, so no stream opens or
-/// closes it: a stream is heard while it runs, and silence is played otherwise. Constructed and destroyed on the
-/// message thread; streams may be used on any other, and end before it.
+/// closes it: a stream is heard while it runs, from when what was played before has left the buffers, and silence is
+/// played otherwise. Once the device has been stopped, by whomever, nothing is heard any more. Samples count as lost
+/// where the device says so, or calls again later than its buffers last. Constructed and destroyed on the message
+/// thread; streams may be used on any other, and end before it.
 class OpenDevice : public audio::System, private juce::AudioIODeviceCallback {
 public:
     /// @param inputs  of those that are open, from 0: input k of a stream is inputs[k]
@@ -26,8 +28,8 @@ public:
 
 private:
     class Connection;
-    static constexpr int piece = 512;  ///< samples that are handed on at once, at most
 
+    bool lostSamples();
     void audioDeviceAboutToStart(juce::AudioIODevice*) override;
     void audioDeviceStopped() override;
     void audioDeviceIOCallbackWithContext(const float* const* in, int inputs, float* const* out, int outputs,
@@ -37,11 +39,13 @@ private:
     const std::vector<int> inputs_;
     const int output_;
     audio::Device device_;
-    std::vector<float> nothing_;
+    double buffered_ = 0.0;  ///< s, of sound between us and the loudspeaker and back
     std::vector<const float*> in_;
     juce::AudioIODevice* counting_ = nullptr;  ///< of lost samples; from its start to its stop
     int lost_ = 0;                             ///< as the device counts
+    double called_ = 0.0;                      ///< when it called last, s; 0: not yet
     bool begun_ = false;
+    std::atomic<long> silent_ {0};  ///< samples until a stream is heard
     std::atomic<audio::Client*> client_ {nullptr};
     std::atomic<bool> inside_ {false};
     std::atomic<bool> running_ {false};

@@ -66,14 +66,15 @@ void Session::run(const std::stop_token& stop)
     for (;;) {
         if (!changed_.wait(lock, stop, [this] { return !orders_.empty(); }))
             return;
-        const auto work = std::move(orders_.front().work);
+        const auto [work, saves] = std::move(orders_.front());
         orders_.erase(orders_.begin());
         stop_ = std::stop_source();
         working_ = true;
         status_.fraction = 0.0;
         status_.trouble = false;
         Progress progress;
-        progress.stop = stop_.get_token();
+        if (!saves)
+            progress.stop = stop_.get_token();
         progress.report = [this](double fraction, std::string_view words) {
             const std::lock_guard inner(mutex_);
             status_.fraction = fraction;
@@ -92,6 +93,10 @@ void Session::run(const std::stop_token& stop)
         if (!trouble.empty()) {
             status_.words = trouble;
             status_.trouble = true;
+            if (saves) {
+                status_.notSaved = trouble;
+                ++status_.failedSaves;
+            }
         }
         working_ = false;
         status_.busy = !orders_.empty();
@@ -165,7 +170,7 @@ void Session::take(PreparedTake take, const Findings& told, const Progress& prog
     put({});  // those of another take
     {
         const std::lock_guard lock(mutex_);
-        refused_ = nullptr;
+        recording_ = nullptr;
     }
     publish(fresh);
     improvement_.emplace(std::move(work));
@@ -210,20 +215,21 @@ void Session::open(RecordingOptions recorded, const std::string& source, std::ve
     const auto recording = std::make_shared<const RecordingOptions>(std::move(recorded));
     auto told = from(source);
     told.remarks = std::move(remarks);
+    {
+        const std::lock_guard lock(mutex_);
+        recording_ = recording;
+    }
     order([this, recording, told](const Progress& progress) {
-        ImportedRecording imported;
         try {
-            imported = importRecording(*recording, progress.part(0.0, 0.1));
+            auto imported = importRecording(*recording, progress.part(0.0, 0.1));
+            auto all = told;
+            all.remarks.insert(all.remarks.end(), imported.remarks.begin(), imported.remarks.end());
+            take(std::move(imported.take), all, progress.part(0.1, 1.0));
         } catch (const Error& error) {
-            const std::lock_guard lock(mutex_);
-            refused_ = recording;
-            if (error.kind() == Error::Kind::cancelled)
+            if (error.kind() == Error::Kind::cancelled || recordingWithoutTake() != recording)
                 throw;
             throw Error(error.kind(), std::string(error.what()) + " Save the recording to look into it.");
         }
-        auto all = told;
-        all.remarks.insert(all.remarks.end(), imported.remarks.begin(), imported.remarks.end());
-        take(std::move(imported.take), all, progress.part(0.1, 1.0));
     });
 }
 

@@ -79,22 +79,24 @@ public:
     // What is there now, in its turn, whatever is cancelled or opened meanwhile; the destructor waits for it.
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
-    void saveRecording(const std::string& folder);  ///< refusedRecording(), with its plan
+    void saveRecording(const std::string& folder);  ///< recordingWithoutTake(), with its plan and how it is imported
 
     void cancel();  ///< what is under way, and what was ordered after it but to be saved
 
     struct Status {
         bool busy = false;
         double fraction = 0.0;
-        std::string words;          ///< what is being done, or what the last order came to
-        bool trouble = false;       ///< the last order failed
+        std::string words;     ///< what is being done, or what the last order came to
+        bool trouble = false;  ///< the last order failed
+        std::string notSaved;  ///< why the last save failed that did
+        std::uint64_t failedSaves = 0;
         std::uint64_t version = 0;  ///< counts the findings
         std::uint64_t models = 0;   ///< counts the identifications
     };
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
-    /// What was just recorded and is no take; null: none. Another take or recording takes its place.
-    std::shared_ptr<const RecordingOptions> refusedRecording() const;
+    /// What was recorded and is no take, or not yet; null: none. Until it is saved, or another take is there.
+    std::shared_ptr<const RecordingOptions> recordingWithoutTake() const;
     Identification identification() const;
     /// What came of the latest order to adapt, once.
     std::optional<Adapted> takeAdapted();
@@ -126,7 +128,7 @@ private:
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
-    std::shared_ptr<const RecordingOptions> refused_;
+    std::shared_ptr<const RecordingOptions> recording_;
     Identification identification_;
     std::optional<Adapted> adapted_;
     std::jthread thread_;

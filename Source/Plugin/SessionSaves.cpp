@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a session writes to files: what there is at the time of the order, which what comes meanwhile does not change.
+#include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Take/TakeFile.h"
 #include "Plugin/Session.h"
@@ -39,15 +41,15 @@ void Session::saveTake(const std::string& folder)
         true);
 }
 
-std::shared_ptr<const RecordingOptions> Session::refusedRecording() const
+std::shared_ptr<const RecordingOptions> Session::recordingWithoutTake() const
 {
     const std::lock_guard lock(mutex_);
-    return refused_;
+    return recording_;
 }
 
 void Session::saveRecording(const std::string& folder)
 {
-    const auto recording = refusedRecording();
+    const auto recording = recordingWithoutTake();
     order(
         [this, recording, folder](const Progress& progress) {
             if (!recording || recording->sounds.empty() || !recording->plan)
@@ -57,7 +59,19 @@ void Session::saveRecording(const std::string& folder)
             const auto& sound = recording->sounds.front().sound;
             writePlan(*recording->plan, place / "plan");
             writeWav(place / "recording.wav", sound.sampleRate, sound.channels, SampleFormat::float32);
-            say("Wrote " + folder + ": the recording, and the plan that it is of.");
+            std::string command = "excursion import recording.wav --plan plan";
+            for (const auto& channel : recording->map)
+                command += " --map " + std::to_string(channel.channel) + "=" + std::string(name(*channel.quantity))
+                           + ":" + figure(channel.fullScale.value_or(1.0), "%.9g");
+            DraftFile draft(place / "import.txt");
+            draft.write(command + " --out take\n");
+            draft.publish();
+            {
+                const std::lock_guard lock(mutex_);
+                if (recording_ == recording)
+                    recording_ = nullptr;
+            }
+            say("Wrote " + folder + ": the recording, its plan, and how it is imported.");
         },
         true);
 }

@@ -42,7 +42,7 @@ MeasureOptions measuring()
 {
     const auto& plan = shortPlan();
     MeasureOptions options;
-    auto& procedure = options.procedure = procedureFor(plan, 4096, 16.0);
+    auto& procedure = options.procedure = procedureFor(plan, {}, 16.0);
     procedure.recorded = 3;
     procedure.inputs = {
         {0, Quantity::voltage, 16.0, {}}, {1, Quantity::current, 4.0, {}}, {2, Quantity::displacement, 8e-3, {}}};
@@ -75,6 +75,14 @@ SimulatedSystem cables(std::vector<Fault> faults = {})
             });
         },
         std::move(faults));
+}
+
+float peakOf(const std::vector<float>& samples)
+{
+    float peak = 0.0f;
+    for (const float sample : samples)
+        peak = std::max(peak, std::abs(sample));
+    return peak;
 }
 
 /// The last samples that are not silent fall like a cosine: no more than a fade's slope from one to the next.
@@ -146,16 +154,15 @@ TEST_CASE("Sweeps are measured after a rise of the loudest one, and are a take t
     sweeps.silence = 0.6;
     sweeps.levels = {1.0, 2.0};
     const auto plan = planSweep(sweeps, sampleRate);
-    const auto block = static_cast<std::size_t>(sweeps.blockSamples(sampleRate));
     auto options = measuring();
     const auto inputs = options.procedure.inputs;
-    options.procedure = procedureFor(plan, block, 16.0);
+    options.procedure = procedureFor(plan, sweeps, 16.0);
     options.procedure.inputs = inputs;
     options.procedure.recorded = 3;
-    options.procedure.rise = 1.0;
     options.procedure.ringSeconds = 60.0;
-    CHECK(options.procedure.loudBegin == block);
-    CHECK(options.procedure.loudLength == block);
+    const auto& loudest = options.procedure.loudest;
+    CHECK(peakOf(loudest) == Approx(2.0 * std::sqrt(2.0) / 16.0).epsilon(0.01));
+    CHECK(options.procedure.rise > 9.9 * static_cast<double>(loudest.size()) / sampleRate);
     Wired wired;
     const auto measured = wired.measure(options);
     RecordingOptions recording;
@@ -172,6 +179,15 @@ TEST_CASE("Sweeps are measured after a rise of the loudest one, and are a take t
     CHECK(imported.sweep->levels.size() == 2);
     CHECK(imported.take.find(Quantity::voltage)->samples.size() == plan.input().samples.size());
 
+    // The rise comes to the low notes step by step.
+    constexpr double limit = 0.4e-3;
+    Wired limited;
+    auto watched = options;
+    watched.procedure.inputs[2].limit = limit;
+    CHECK_THROWS_WITH(limited.measure(watched), Catch::Contains("in the rise"));
+    CHECK(limited.speaker->farthest > 0.9 * limit);
+    CHECK(limited.speaker->farthest < 1.7 * limit);
+
     // Where nothing is played, nothing need move: the inputs of a digital loop are silent then.
     SimulatedSystem loop([] { return Wiring([](float played) { return std::vector<float>(3, 0.5f * played); }); });
     CHECK_NOTHROW(audio::measure(loop, loop.devices().front(), options));
@@ -183,12 +199,12 @@ TEST_CASE("What is played must sound, and fit the output", "[audio]")
     double peak = 0.0;
     for (const double volts : plan.input().samples)
         peak = std::max(peak, std::abs(volts));
-    CHECK_NOTHROW(procedureFor(plan, 4096, 1.001 * peak));
-    CHECK_THROWS_WITH(procedureFor(plan, 4096, 0.999 * peak), Catch::Contains("full scale"));
+    CHECK_NOTHROW(procedureFor(plan, {}, 1.001 * peak));
+    CHECK_THROWS_WITH(procedureFor(plan, {}, 0.999 * peak), Catch::Contains("full scale"));
     auto silent = plan;
     for (auto& channel : silent.channels)
         std::fill(channel.samples.begin(), channel.samples.end(), 0.0);
-    CHECK_THROWS_AS(procedureFor(silent, 4096, 16.0), Error);
+    CHECK_THROWS_AS(procedureFor(silent, {}, 16.0), Error);
 }
 
 TEST_CASE("The cone of a virtual loudspeaker does not go far beyond its limit", "[audio]")

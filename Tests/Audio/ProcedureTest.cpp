@@ -38,8 +38,7 @@ ProcedureOptions someOptions()
     ProcedureOptions options;
     options.sampleRate = rate;
     options.sound = someSound();
-    options.loudBegin = 3 * period;
-    options.loudLength = period;
+    options.loudest.assign(options.sound.begin() + 3 * period, options.sound.begin() + 4 * period);
     options.inputs.resize(1);
     options.inputs[0].quantity = Quantity::voltage;
     options.inputs[0].factor = 16.0;
@@ -306,23 +305,18 @@ TEST_CASE("Lost samples count in the recording only", "[audio]")
     }
 }
 
-TEST_CASE("Where inputs give nothing, what is played fades out", "[audio]")
+TEST_CASE("Where inputs give nothing, what is played fades out, as no limit can be kept", "[audio]")
 {
-    const auto all = [] {
-        Bench whole(someOptions());
-        whole.run();
-        return whole.played;
-    }();
-    const auto options = someOptions();
-    Bench bench(options);
-    bench.nothingAt = all.size() - static_cast<std::size_t>(options.tail * rate) - 3 * period;  // amid the sound
-    bench.run();
-    CHECK(bench.procedure.ending().kind == Ending::Kind::broken);
-    CHECK(bench.procedure.ending().stage == Stage::playing);
-    CHECK(bench.procedure.breaks() > 0);
-    const auto end = bench.nothingAt + static_cast<std::size_t>(0.03 * rate) + 600;  // with two blocks
-    for (auto n = end; n < bench.played.size(); ++n)
-        REQUIRE(bench.played[n] == 0.0f);
+    for (const auto at : {listening / 2, listening + rising / 2, listening + rising + pausing + 2000}) {
+        Bench bench(someOptions());
+        bench.nothingAt = at;
+        bench.run();
+        CHECK(bench.procedure.ending().kind == Ending::Kind::broken);
+        CHECK(bench.procedure.breaks() > 0);
+        const auto end = at + static_cast<std::size_t>(0.03 * rate) + 600;  // with two blocks
+        for (auto n = end; n < bench.played.size(); ++n)
+            REQUIRE(bench.played[n] == 0.0f);
+    }
 }
 
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")
@@ -357,7 +351,12 @@ TEST_CASE("Options of a procedure that make no sense are refused in a sentence",
     refusedAs("sample rate", [](auto& o) { o.sampleRate = 0.0; });
     refusedAs("within -1 and 1", [](auto& o) { o.sound[3] = 1.1f; });
     refusedAs("within -1 and 1", [](auto& o) { o.sound.clear(); });
-    refusedAs("loudest period", [](auto& o) { o.loudBegin = o.sound.size() - 5; });
+    refusedAs("loudest period", [](auto& o) { o.loudest.clear(); });
+    refusedAs("cannot reach", [](auto& o) { o.inputs[0].limit = 16.0; });
+    refusedAs("one of a quantity", [](auto& o) {
+        o.inputs[0].quantity.reset();
+        o.inputs[0].limit = 1.0;
+    });
     refusedAs("an input and an output", [](auto& o) { o.inputs.clear(); });
     refusedAs("not recorded", [](auto& o) { o.inputs[0].input = 1; });
     refusedAs("limit", [](auto& o) { o.inputs[0].limit = -1.0; });

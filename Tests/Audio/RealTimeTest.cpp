@@ -50,12 +50,12 @@ struct DeviceThread {
     {
     }
 
-    static audio::ProcedureOptions options(double limit = 1000.0)
+    static audio::ProcedureOptions options(double limit = 0.99)
     {
         audio::ProcedureOptions options;
         options.sampleRate = 8000.0;
         options.sound.assign(8000, 0.1f);
-        options.loudLength = 800;
+        options.loudest.assign(800, 0.1f);
         options.inputs = {{0, Quantity::voltage, 1.0, limit}, {1, Quantity::displacement, 1.0, limit}};
         options.recorded = 2;
         options.rise = 1.0;

@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <chrono>
 #include <cstdlib>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 using namespace excursion::test;
@@ -267,6 +269,9 @@ TEST_CASE("What is no file is written to and stays what it is, and a full disk i
     REQUIRE(std::system(("cat '" + pipe.string() + "' > '" + copy.string() + "' &").c_str()) == 0);
     CHECK(runProgram(scratch.folder(), {"parameters", model, "--json=" + pipe.string()}).code == 0);
     CHECK(fs::is_fifo(pipe));
+    for (int k = 0; k < 300 && bytesOf(copy.string()).size() < 100; ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    CHECK(bytesOf(copy.string()).size() > 100);
     const auto full = runProgram(scratch.folder(), {"parameters", model, "--json=/dev/full"});
     CHECK(full.code == 3);
     CHECK(full.err.find("'/dev/full' cannot be written") != std::string::npos);

@@ -28,6 +28,7 @@ struct App {
     explicit App(const char* levels)
     {
         plugin::VirtualDevice::gone = plugin::VirtualDevice::scrambled = false;
+        plugin::VirtualDevice::pace = 0.0;
         devices.addAudioDeviceType(std::make_unique<plugin::VirtualDeviceType>());
         devices.setCurrentAudioDeviceType("Virtual", true);
         juce::AudioDeviceManager::AudioDeviceSetup setup;
@@ -176,8 +177,10 @@ TEST_CASE("The level of a measurement rises by itself, and Stop fades out", "[pl
 {
     App app("1 3");
     plugin::VirtualDevice::takePlayed();
+    plugin::VirtualDevice::pace = 8.0;
     plugin::click(*app.editor, "Start measuring");
-    app.run([&] { return app.panel().fraction() > 0.6; });
+    CHECK(plugin::find<juce::TextButton>(*app.editor, "Audio device...")->isEnabled() == false);
+    app.run([&] { return app.panel().fraction() > 0.7; });
     plugin::click(*app.editor, "Stop");
     app.run();
     CHECK(!app.panel().running());
@@ -198,7 +201,7 @@ TEST_CASE("The level of a measurement rises by itself, and Stop fades out", "[pl
 TEST_CASE("A limit ends a measurement of the app, and nothing is taken of it", "[plugin][slow]")
 {
     App app("1 3");
-    app.panel().setLimit(2, "0.00015");
+    app.panel().setLimit(2, "0.15mm");
     plugin::VirtualDevice::takePlayed();
     plugin::click(*app.editor, "Start measuring");
     app.run();
@@ -209,6 +212,11 @@ TEST_CASE("A limit ends a measurement of the app, and nothing is taken of it", "
     CHECK(!app.processor.isSuspended());
     const auto played = plugin::VirtualDevice::takePlayed();
     CHECK(static_cast<double>(peakOf(played, 0, played.size())) < 0.5 * 4.0 * 3.0 / 16.0);
+    app.panel().setLimit(2, "4");  // which is metres
+    plugin::click(*app.editor, "Start measuring");
+    CHECK(!app.panel().running());
+    CHECK(!app.processor.isSuspended());
+    CHECK(app.status().contains("cannot reach"));
     app.panel().setLimit(2, "much");
     plugin::click(*app.editor, "Start measuring");
     CHECK(!app.panel().running());
@@ -228,6 +236,10 @@ TEST_CASE("Where a device loses samples the plan is played again, and the take s
     CHECK(findings->report.fitForUse());
     REQUIRE(!findings->remarks.empty());
     CHECK(juce::String(findings->remarks.front()).contains("played again"));
+    // 6 s of the first attempt and all of the plan; no second rise, as the first one was completed
+    const auto played = plugin::VirtualDevice::takePlayed();
+    CHECK(endOf(played) > 9 * 48000);
+    CHECK(endOf(played) < 13 * 48000);
 }
 
 TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
@@ -242,14 +254,16 @@ TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
     app.editor->update();
     REQUIRE(session.status().trouble);
     CHECK(app.status().contains("Save the recording"));
-    REQUIRE(session.refusedRecording());
+    const auto recording = session.recordingWithoutTake();
+    REQUIRE(recording);
     const auto folder = juce::File::createTempFile("refused");
     app.editor->measure().save(folder);
     session.wait();
     const auto place = std::filesystem::path(folder.getFullPathName().toStdString());
     CHECK(readWav(place / "recording.wav").channels.size() == 3);
-    CHECK(readOwnTake(headerOf(place / "plan")).take.input().samples.size()
-          == session.refusedRecording()->plan->input().samples.size());
+    CHECK(readOwnTake(headerOf(place / "plan")).take.input().samples.size() == recording->plan->input().samples.size());
+    CHECK(!session.recordingWithoutTake());
+    CHECK(juce::File(folder.getChildFile("import.txt")).loadFileAsString().contains("--map 2=current:4"));
     app.editor->update();
     app.editor->measure().save(folder);
     app.editor->update();

@@ -126,18 +126,28 @@ TEST_CASE("An effect whose adding was cancelled is still there to be done again,
     CHECK(editor.history().canRedo());
     CHECK_FALSE(editor.history().canUndo());
 
-    // The same, with a step of another kind in between, which lets it be forgotten.
+    // The same of a second effect, with a step of another kind in between: what was cancelled is forgotten, and the
+    // effect that is there stays.
+    editor.redo();
+    plugin::settle(editor);
+    session.add("force-factor");
+    plugin::settle(editor);
+    REQUIRE(rungs() == 3);
+    editor.undo();
+    plugin::settle(editor);
+    REQUIRE(rungs() == 2);
     editor.redo();
     editor.history().did(
         "Something else", [] {}, [] {});
     session.cancel();
     session.wait();
     editor.update();
-    REQUIRE(rungs() == 1);
-    editor.undo();
-    editor.undo();
-    session.wait();
-    editor.update();
-    CHECK(rungs() == 1);
+    REQUIRE(rungs() == 2);
+    for (int k = 0; k < 2; ++k) {
+        editor.undo();
+        session.wait();
+        editor.update();
+    }
+    CHECK(rungs() == 2);
     CHECK_FALSE(session.status().trouble);
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -22,6 +23,8 @@ public:
     /// Its inputs are as loud as what is played, and nothing that was played.
     inline static std::atomic<bool> scrambled {false};
     inline static std::atomic<std::size_t> losesAt {0};  ///< samples after the first sound; 0: never; once
+    /// How much faster than sound it runs; 0: as fast as it can.
+    inline static std::atomic<double> pace {0.0};
     /// The first of its two open outputs.
     inline static std::atomic<int> firstOutput {0};
 
@@ -99,6 +102,8 @@ private:
             float* const outs[] {out[0].data(), out[1].data()};
             callback_->audioDeviceIOCallbackWithContext(ins, 3, outs, 2, 256, {});
             keep(out[0]);
+            if (pace > 0.0)
+                std::this_thread::sleep_for(std::chrono::duration<double>(256.0 / 48000.0 / pace));
             for (std::size_t n = 0; n < 256; ++n) {
                 const auto reading = speaker.next(16.0 * static_cast<double>(out[0][n]));
                 in[0][n] = static_cast<float>(reading.voltage / 16.0);

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Estimate/SectionEnds.h"
 #include "Engine/Take/FindExcitation.h"
 
 #include <mutex>
@@ -15,8 +16,10 @@ namespace {
 
 Take completed(Take take)
 {
-    if (auto* measurement = std::get_if<Measurement>(&take))
+    if (auto* measurement = std::get_if<Measurement>(&take)) {
         completeExcitation(*measurement);
+        settleEnds(*measurement);
+    }
     return take;
 }
 

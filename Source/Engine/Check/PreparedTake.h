@@ -10,7 +10,8 @@
 namespace excursion {
 
 /// A take that was made ready, once, for all that is asked of it: its excitation is completed (completeExcitation()),
-/// it is checked, and it is cut into sections that models are compared with. All that works on a take as a whole asks
+/// the ends of its sections are settled (settleEnds()), it is checked, and it is cut into sections that models are
+/// compared with. All that works on a take as a whole asks
 /// for one of these. Copies share the take; any thread may read it.
 class PreparedTake {
 public:

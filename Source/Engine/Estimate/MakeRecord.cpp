@@ -185,33 +185,51 @@ int quietestRealization(const AveragedPeriods& averages)
     return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
 
-/// The section sampled at the rate divided by `factor`: the same lines, without those above the new half of the sample
-/// rate.
-void thinOut(Section& section, std::size_t factor)
+/// Lines of a section that is sampled with `length` samples in place of `window`: those that it had, or as many as it
+/// can have.
+template <class Value>
+void sampleAnew(std::vector<Value>& lines, std::size_t window, std::size_t length)
 {
-    const double share = 1.0 / static_cast<double>(factor);
-    const std::size_t length = section.window / factor, lines = length / 2 + 1;
-    auto input = fft(section.input);
-    input.resize(lines);
-    input.back() = 0.0;
-    for (auto& value : input)
+    const double share = static_cast<double>(length) / static_cast<double>(window);
+    lines.resize(length / 2 + 1);
+    for (auto& value : lines)
         value *= share;
+}
+
+/// The section with `length` samples a period: the same lines, without those above half of a lower rate. Above half of
+/// the former rate nothing is known, and nothing compared.
+void sampleAnew(Section& section, std::size_t length)
+{
+    const auto window = section.window;
+    auto input = fft(section.input);
+    sampleAnew(input, window, length);
+    input[std::min(window, length) / 2] = 0.0;
     section.input = inverseFft(input, length);
     section.window = length;
-    for (auto& measured : section.measured) {
-        measured.resize(lines);
-        for (auto& value : measured)
-            value *= share;
-    }
+    for (auto& measured : section.measured)
+        sampleAnew(measured, window, length);
     for (auto* deviations : {&section.deviation, &section.silentDeviation})
-        for (auto& deviation : *deviations) {
-            deviation.resize(lines);
-            for (auto& value : deviation)
-                value *= share;
-        }
-    section.inputVariance.resize(std::min(lines, section.inputVariance.size()));
+        for (auto& deviation : *deviations)
+            sampleAnew(deviation, window, length);
+    section.inputVariance.resize(std::min(length / 2 + 1, section.inputVariance.size()));
+    const double share = static_cast<double>(length) / static_cast<double>(window);
     for (auto& variance : section.inputVariance)
         variance *= share * share;
+}
+
+/// Samples of a period that a model is simulated with: fewer where lines above the distortion's band need not be there,
+/// twice as many where products of its laws would fold onto lines that are.
+std::size_t simulatedPeriod(const Measurement& take, double bandHigh)
+{
+    auto period = static_cast<std::size_t>(take.excitation->period);
+    double rate = take.sampleRate;
+    const double compared = std::min(distortionBand * bandHigh, trustedBand * rate),
+                 needed = compared + foldingOrder * bandHigh;
+    if (needed > rate)
+        return 2 * period;
+    for (; period % 2 == 0 && needed <= 0.5 * rate; rate *= 0.5)
+        period /= 2;
+    return period;
 }
 
 /// Section::power: what heats the coil before the loudspeaker has settled, and less once the coil is warm.
@@ -237,7 +255,7 @@ std::vector<double> powerByPeriod(const Measurement& take, int section)
     return power;
 }
 
-void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t factor,
+void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t simulated,
                          Record& record)
 {
     const auto& take = averages.take();
@@ -280,15 +298,14 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
                     section.silentDeviation.push_back(
                         deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
-            if (factor > 1)
-                thinOut(section, factor);
+            if (simulated != section.window)
+                sampleAnew(section, simulated);
             record.sections.push_back(std::move(section));
         }
     }
     for (const auto quantity : record.channels)
         record.wanderDb.push_back(wanderDb(averages, *take.find(quantity)));
-    record.leadIn = static_cast<std::size_t>(e.period) / factor
-                    * static_cast<std::size_t>(std::max(1, e.settlePeriods));
+    record.leadIn = simulated * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
 void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
@@ -368,14 +385,9 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
         const double resolution = take.sampleRate / take.excitation->period;
         record.bandLow = resolution * lines.front();
         record.bandHigh = resolution * lines.back();
-        // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
-        std::size_t factor = 1;
-        while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
-               && (distortionBand + foldingOrder) * record.bandHigh
-                      <= take.sampleRate / static_cast<double>(2 * factor))
-            factor *= 2;
-        record.sampleRate = take.sampleRate / static_cast<double>(factor);
-        addPeriodicSections(averages, options, factor, record);
+        const auto simulated = simulatedPeriod(take, record.bandHigh);
+        record.sampleRate = resolution * static_cast<double>(simulated);
+        addPeriodicSections(averages, options, simulated, record);
     } else {
         record.wanderDb.resize(record.channels.size());
         addAperiodicSections(take, options, record);
@@ -385,7 +397,8 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
         takeOffHighPass(record, *pressure, options.microphoneCorner);
     if (record.bandLow <= 0.0)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
-    record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
+    record.highFrequency = std::min(trustedBand * std::min(record.sampleRate, take.sampleRate),
+                                    distortionBand * record.bandHigh);
     return record;
 }
 

@@ -39,7 +39,7 @@ struct Section {
 /// compared ones are left out, together with the samples that they needed. Without periods the record is cut into
 /// windows and the noise is not known.
 struct Record {
-    double sampleRate = 0.0;                      ///< Hz; the take's, or that divided by a power of two
+    double sampleRate = 0.0;                      ///< Hz; the take's, twice that, or that divided by a power of two
     bool electrical = true;                       ///< driven by a voltage; false: by a force
     std::vector<Quantity> channels;               ///< outputs
     std::vector<std::string> units;               ///< units of the outputs

@@ -127,10 +127,9 @@ fs::path planHeaderOf(const fs::path& given)
     return fs::exists(plan, error) ? plan : headerOf(given);
 }
 
-std::vector<fs::path> filesOfTake(const fs::path& folder)
-{
-    return {folder / takeNames.json, folder / takeNames.wav, folder / planNames.json, folder / planNames.wav};
-}
+std::vector<fs::path> filesOfTake(const fs::path& folder) { return {folder / takeNames.json, folder / takeNames.wav}; }
+
+std::vector<fs::path> filesOfPlan(const fs::path& folder) { return {folder / planNames.json, folder / planNames.wav}; }
 
 SweepTake readOwnTake(const fs::path& json)
 {

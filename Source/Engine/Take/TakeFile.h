@@ -16,8 +16,9 @@ std::filesystem::path headerOf(const std::filesystem::path&);
 /// measurement.json.
 std::filesystem::path planHeaderOf(const std::filesystem::path&);
 
-/// The files that a take and a plan have in a folder.
+/// The files that a take has in a folder, and those of a plan.
 std::vector<std::filesystem::path> filesOfTake(const std::filesystem::path& folder);
+std::vector<std::filesystem::path> filesOfPlan(const std::filesystem::path& folder);
 
 /// Reads such a JSON and the WAV that it names. Throws Error (input) with one sentence: a sample that is not finite, a
 /// channel that is missing, a size beyond the file's are all refused. A take that neither a voltage nor a force drives
