@@ -17,6 +17,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto pollEvery = std::chrono::milliseconds(10);
 constexpr double stopPatience = 0.5;  // s for the fade, beside the latency
 constexpr double leastSweeps = 10.0;  // of a rise: 4 dB from one to the next
+constexpr double leastCycles = 8.0;   // of its lowest note while a quick sweep rises by a factor of e
 constexpr auto reportEvery = std::chrono::milliseconds(100);
 
 std::string inputText(const WatchedInput& watched)
@@ -59,6 +60,7 @@ public:
         auto moved = begun, reported = begun - reportEvery;
         auto frames = procedure_.frames();
         double patience = options.patience;
+        bool stopped = false;
         while (!procedure_.ended()) {
             std::this_thread::sleep_for(pollEvery);
             procedure_.readRecorded(channels);
@@ -67,7 +69,8 @@ public:
                 frames = present;
                 moved = now;
             }
-            if (options.stop.stop_requested() && patience == options.patience) {
+            if (!stopped && options.stop.stop_requested()) {
+                stopped = true;
                 procedure_.stop();
                 patience = std::min(patience, stopPatience + 2.0 * options.stream.latency);
                 moved = now;
@@ -118,6 +121,14 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
         return "Nothing of what is played arrives at the inputs, though the rise has come to "
                + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
                + " dB below full level: look at the amplifier, the cables, and which output and inputs are used.";
+    case Ending::Kind::unseen:
+        return "The " + inputText(watched)
+               + " has a limit and does not answer what is played, though the rise has come to "
+               + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
+               + " dB below full level: look at its sensor and cable, or take the limit off.";
+    case Ending::Kind::noInput:
+        return "The inputs of the device give nothing, " + momentOf(ending)
+               + ": choose the device and its inputs again.";
     case Ending::Kind::frozen:
         return "No input has moved any more from " + figure(ending.seconds, "%.1f")
                + " s of the plan on: the device has lost its connection, or its cables have.";
@@ -146,9 +157,11 @@ ProcedureOptions procedureFor(const Measurement& plan, const std::optional<Sweep
                                              "most 1.");
     if (sweep) {
         auto quick = *sweep;
-        quick.seconds = std::min(quick.seconds, std::max(1.0, 20.0 / quick.bandLow));
-        quick.fadeIn = std::min(quick.fadeIn, 0.1 * quick.seconds);
-        quick.fadeOut = std::min(quick.fadeOut, 0.1 * quick.seconds);
+        // slow enough for a resonance to build up, with fades that hide no more of the band than the plan's do
+        quick.seconds = std::min(quick.seconds, leastCycles * std::log(quick.bandHigh / quick.bandLow) / quick.bandLow);
+        const double share = quick.seconds / sweep->seconds;
+        quick.fadeIn *= share;
+        quick.fadeOut *= share;
         const auto once = quick.sweep(plan.sampleRate, quick.levels.size() - 1).samples();
         std::transform(once.begin(), once.end(), std::back_inserter(options.loudest), played);
         options.rise = std::max(options.rise, leastSweeps * static_cast<double>(once.size()) / plan.sampleRate);
@@ -210,7 +223,8 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
             continue;
         }
         if (ending.kind != Ending::Kind::complete)
-            throw Error(ending.kind == Ending::Kind::frozen ? Error::Kind::input : Error::Kind::data,
+            throw Error(ending.kind == Ending::Kind::frozen || ending.kind == Ending::Kind::noInput ? Error::Kind::input
+                                                                                                    : Error::Kind::data,
                         sentenceOf(ending, procedureOptions));
         result.attempts = attempt;
         return result;

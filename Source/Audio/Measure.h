@@ -37,12 +37,13 @@ struct Measured {
     std::vector<std::string> remarks;  ///< sentences for a person
 };
 
-/// Plays and records through a device, and once more, without the rise, where samples were lost on the way. The device
-/// is closed when it returns, or throws
+/// Plays and records through a device, and again where samples were lost, with a rise only if none was completed. The
+/// device is closed when it returns, or throws
 ///     Error (cancelled) when it was told to stop, after the fade, for which a device has half a second and its
 ///     latency;
-///     Error (data) when a limit was reached, an input clipped or nothing was heard;
-///     Error (input) when the device does not open, is gone, all inputs froze, or samples are lost at every attempt.
+///     Error (data) when a limit was reached or cannot be seen, an input clipped or nothing was heard;
+///     Error (input) when the device does not open, is gone, gives no inputs, all inputs froze, or samples are lost at
+///     every attempt.
 Measured measure(System&, const Device&, const MeasureOptions&);
 
 /// What ended a procedure before its end, in a sentence; for all kinds but `complete` and `stopped`.

@@ -246,8 +246,13 @@ void Procedure::closeWindow()
         any = any || heard_[k] > heardRatio;
         watches_[k].window = 0.0;
     }
-    if (!any && windowGain_ > std::pow(10.0, -judgedDb / 20.0))
+    if (windowGain_ <= std::pow(10.0, -judgedDb / 20.0))
+        return;
+    if (!any)
         end(Ending::Kind::unheard);
+    for (std::size_t k = 0; k < watches_.size(); ++k)
+        if (options_.inputs[k].limit && heard_[k] <= heardRatio)
+            end(Ending::Kind::unseen, k);
 }
 
 void Procedure::record(const Block& block, std::size_t frame)
@@ -299,7 +304,9 @@ void Procedure::process(const Block& block) noexcept
 {
     if (block.broken || block.in == nullptr) {
         breaks_.fetch_add(1, std::memory_order_relaxed);
-        if (isRecorded(now_) || block.in == nullptr)  // without inputs no limit can be kept
+        if (block.in == nullptr)  // no limit can be kept
+            end(Ending::Kind::noInput);
+        else if (isRecorded(now_))
             end(Ending::Kind::broken);
     }
     if (stopAsked_.load(std::memory_order_relaxed))

@@ -33,13 +33,15 @@ struct Ending {
         limit,     ///< a quantity reached its limit
         clipping,  ///< an input reached its own, or is no number
         unheard,   ///< nothing of what is played arrives
+        unseen,    ///< an input that has a limit does not answer what is played
+        noInput,   ///< the device gives no inputs
         frozen,    ///< no input moves any more
         broken,    ///< samples were lost
         overrun    ///< recorded samples were not taken away in time
     };
     Kind kind = Kind::complete;
     Stage stage = Stage::listening;  ///< in which it was decided
-    std::size_t watched = 0;         ///< limit, clipping: which of the watched inputs
+    std::size_t watched = 0;         ///< limit, clipping, unseen: which of the watched inputs
     double value = 0.0;              ///< limit: what it reached, SI
     double gain = 0.0;               ///< of what was played then; 1: in full
     double seconds = 0.0;            ///< since the stage began
@@ -70,9 +72,9 @@ struct ProcedureOptions {
 ///  - ended: silence.
 ///
 /// From anywhere it goes to fading, a cosine of `fade` seconds over what is being played, and then ended, when it is
-/// told to stop, an input reaches its limit, clips or gives nothing, nothing arrives though the rise has come within 12
-/// dB of its end (no input is twice as loud, rms over a period, as in silence), or, while the sound is played, samples
-/// are lost or no input moves for half a second.
+/// told to stop, an input reaches its limit or clips, or the device gives no inputs; when the rise has come within 12
+/// dB of its end and nothing arrives (no input is twice as loud, rms over a period, as in silence), or not at an input
+/// that has a limit; or, while the sound is played, when samples are lost or no input moves for half a second.
 ///
 /// process() is for the thread of the device: it neither allocates nor locks nor calls the system.
 class Procedure : public Client {

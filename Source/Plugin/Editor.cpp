@@ -67,6 +67,7 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     progress_.setVisible(false);
     cancel_.setVisible(false);
     addAndMakeVisible(ring_);
+    failedSaves_ = owner_.session().status().failedSaves;  // another window has told them
     tell("Open, draw or measure a loudspeaker; or load a model on the last page.", false);
     go(owner_.session().findings() ? PageName::diagnose : PageName::measure);
     setResizable(true, true);

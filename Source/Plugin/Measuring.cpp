@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Measuring.h"
 
+#include "Engine/Error.h"
+
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -20,6 +22,8 @@ Measuring::Measuring(std::unique_ptr<OpenDevice> device, Measurement plan, std::
     // room for all of it, so that nothing is lost while the computer does something else
     options.procedure.ringSeconds = static_cast<double>(options.procedure.sound.size()) / options.procedure.sampleRate
                                     + options.procedure.pause + options.procedure.tail + 1.0;
+    if (std::string reason; !options.procedure.isValid(&reason))
+        throw Error(Error::Kind::usage, reason);
     options.stop = stop_.get_token();
     options.report = [this](const audio::Status& status) {
         const std::lock_guard lock(mutex_);

@@ -36,7 +36,7 @@ class Measuring {
 public:
     /// @param roles      of the inputs that `device` hands on, in their order
     /// @param fullScale  V at the loudspeaker for an output sample of 1.0
-    /// Throws Error (data) for a plan that the output cannot play.
+    /// Throws Error: data for a plan that the output cannot play, usage for a limit that its input cannot reach.
     Measuring(std::unique_ptr<OpenDevice> device, Measurement plan, std::vector<InputRole> roles, double fullScale);
     ~Measuring();
 

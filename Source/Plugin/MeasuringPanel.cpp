@@ -226,7 +226,9 @@ void MeasuringPanel::start()
             throw Error(
                 Error::Kind::usage,
                 "Choose an input for the voltage at the terminals and at least one other, such as the current.");
-        recorded_.reset();
+        if (waits_)
+            throw Error(Error::Kind::usage,
+                        "What was measured last waits for the work that is under way: cancel that, or wait.");
         window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
         measuring_ = std::make_unique<Measuring>(std::make_unique<OpenDevice>(devices_, inputs, output),
                                                  std::move(plan), wanted, fullScale);
@@ -266,15 +268,14 @@ void MeasuringPanel::tick()
         showProgress();
     else if (measuring_)
         take();
-    if (!recorded_)
+    if (!waits_)
         return;
     if (window_.processor().session().status().busy) {  // a fit that is under way is not to end for it
         preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
         return;
     }
-    window_.processor().session().open(std::move(recorded_->recording), "Measured with " + recorded_->device,
-                                       std::move(recorded_->remarks));
-    recorded_.reset();
+    waits_ = false;
+    window_.processor().session().openKept();
     preview();
 }
 
@@ -285,10 +286,13 @@ void MeasuringPanel::take()
         auto recorded = measuring_->recorded();
         const bool stopped = measuring_->stopped();
         end();
-        if (stopped)
+        if (stopped) {
             window_.tell("The measurement was stopped.", false);
-        else
-            recorded_ = std::move(recorded);
+            return;
+        }
+        window_.processor().session().keep(std::move(recorded.recording), "Measured with " + recorded.device,
+                                           std::move(recorded.remarks));
+        waits_ = true;
     } catch (const std::exception& error) {
         end();
         window_.tell(words(error.what()), true);

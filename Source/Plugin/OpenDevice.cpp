@@ -10,6 +10,11 @@
 #include <utility>
 
 namespace excursion::plugin {
+namespace {
+
+constexpr double jitter = 0.05;  // s, by which a computer calls late without harm where it tells less of its buffers
+
+}  // namespace
 
 class OpenDevice::Connection : public audio::Stream {
 public:
@@ -47,7 +52,9 @@ OpenDevice::OpenDevice(juce::AudioDeviceManager& manager, std::vector<int> input
         device_.rates = {device->getCurrentSampleRate()};
         const int latency = std::max(0, device->getOutputLatencyInSamples())
                             + std::max(0, device->getInputLatencyInSamples());
-        buffered_ = (device->getCurrentBufferSizeSamples() + latency) / device->getCurrentSampleRate();
+        const double block = device->getCurrentBufferSizeSamples() / device->getCurrentSampleRate();
+        buffered_ = block + latency / device->getCurrentSampleRate();
+        lostAfter_ = std::max(buffered_, 2.0 * block) + jitter;
     }
     manager_.addAudioCallback(this);
 }
@@ -81,7 +88,7 @@ bool OpenDevice::lostSamples()
 {
     const int lost = counting_ != nullptr ? counting_->getXRunCount() : 0;
     const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes(), before = std::exchange(called_, now);
-    return std::exchange(lost_, lost) != lost || (before > 0.0 && now - before > buffered_);
+    return std::exchange(lost_, lost) != lost || (before > 0.0 && now - before > lostAfter_);
 }
 
 void OpenDevice::audioDeviceIOCallbackWithContext(const float* const* in, int inputs, float* const* out, int outputs,

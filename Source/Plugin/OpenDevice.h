@@ -39,7 +39,8 @@ private:
     const std::vector<int> inputs_;
     const int output_;
     audio::Device device_;
-    double buffered_ = 0.0;  ///< s, of sound between us and the loudspeaker and back
+    double buffered_ = 0.0;   ///< s, of sound between us and the loudspeaker and back
+    double lostAfter_ = 0.0;  ///< s between two calls after which samples were lost
     std::vector<const float*> in_;
     juce::AudioIODevice* counting_ = nullptr;  ///< of lost samples; from its start to its stop
     int lost_ = 0;                             ///< as the device counts

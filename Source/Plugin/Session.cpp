@@ -209,16 +209,26 @@ void Session::open(const VirtualOrder& wanted)
     });
 }
 
-void Session::open(RecordingOptions recorded, const std::string& source, std::vector<std::string> remarks)
+void Session::keep(RecordingOptions recorded, const std::string& source, std::vector<std::string> remarks)
 {
-    cancel();
-    const auto recording = std::make_shared<const RecordingOptions>(std::move(recorded));
-    auto told = from(source);
-    told.remarks = std::move(remarks);
+    const std::lock_guard lock(mutex_);
+    recording_ = std::make_shared<const RecordingOptions>(std::move(recorded));
+    recorded_ = from(source);
+    recorded_.remarks = std::move(remarks);
+}
+
+void Session::openKept()
+{
+    std::shared_ptr<const RecordingOptions> recording;
+    Findings told;
     {
         const std::lock_guard lock(mutex_);
-        recording_ = recording;
+        recording = recording_;
+        told = recorded_;
     }
+    if (!recording)
+        return;
+    cancel();
     order([this, recording, told](const Progress& progress) {
         try {
             auto imported = importRecording(*recording, progress.part(0.0, 0.1));

@@ -63,9 +63,9 @@ public:
 
     void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    /// A recording that was just made, as importRecording().
-    /// @param remarks  on how it was made
-    void open(RecordingOptions, const std::string& source, std::vector<std::string> remarks = {});
+    /// A recording that was just made; it is there to be saved until it is opened or another one is kept.
+    void keep(RecordingOptions, const std::string& source, std::vector<std::string> remarks);
+    void openKept();  ///< as importRecording(); nothing where none is kept
     void add(const std::string& effect);
     void undo();
     void begin();  ///< the first model of the take, where that was cancelled or went wrong
@@ -129,6 +129,7 @@ private:
     Status status_;
     std::shared_ptr<const Findings> findings_;
     std::shared_ptr<const RecordingOptions> recording_;
+    Findings recorded_;  ///< what is told of it
     Identification identification_;
     std::optional<Adapted> adapted_;
     std::jthread thread_;

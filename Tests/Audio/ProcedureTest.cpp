@@ -76,6 +76,8 @@ struct Bench {
             back.pop_front();
             for (auto& channel : in)
                 channel[n] = shape(x, played.size() + n);
+            if (second)
+                in[1][n] = second(x);
             back.push_back(0.0f);  // for what is to be played now
         }
         std::vector<const float*> inPlaces;
@@ -106,6 +108,7 @@ struct Bench {
     std::vector<float> played;
     float gain = 0.5f, otherOutput = 0.0f;
     std::size_t brokenAt = 0, askAt = 0, nothingAt = 0;
+    std::function<float(float)> second;
     std::function<float(float, std::size_t)> shape = [this](float x, std::size_t) {
         return x + 1e-4f * static_cast<float>(normal(random));
     };
@@ -311,12 +314,32 @@ TEST_CASE("Where inputs give nothing, what is played fades out, as no limit can 
         Bench bench(someOptions());
         bench.nothingAt = at;
         bench.run();
-        CHECK(bench.procedure.ending().kind == Ending::Kind::broken);
-        CHECK(bench.procedure.breaks() > 0);
+        CHECK(bench.procedure.ending().kind == Ending::Kind::noInput);
+        CHECK_THAT(sentenceOf(bench.procedure.ending(), bench.procedure.options()), Catch::Contains("give nothing"));
         const auto end = at + static_cast<std::size_t>(0.03 * rate) + 600;  // with two blocks
         for (auto n = end; n < bench.played.size(); ++n)
             REQUIRE(bench.played[n] == 0.0f);
     }
+}
+
+TEST_CASE("An input that has a limit must answer what is played", "[audio]")
+{
+    auto options = someOptions();
+    options.inputs.push_back({1, Quantity::displacement, 1e-3, 0.9e-3});
+    options.recorded = 2;
+    Bench bench(options);
+    bench.second = [](float) { return 0.01f; };  // a laser that looks past the cone
+    bench.run();
+    const auto& ending = bench.procedure.ending();
+    CHECK(ending.kind == Ending::Kind::unseen);
+    CHECK(ending.watched == 1);
+    CHECK(ending.stage == Stage::rising);
+    CHECK_THAT(sentenceOf(ending, options), Catch::Contains("input 2 (displacement)"));
+    options.inputs[1].limit.reset();  // without a limit that is for the person who looks at the remarks
+    Bench free(options);
+    free.second = [](float) { return 0.01f; };
+    free.run();
+    CHECK(free.procedure.ending().kind == Ending::Kind::complete);
 }
 
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")

@@ -16,10 +16,8 @@ namespace {
 
 Take completed(Take take)
 {
-    if (auto* measurement = std::get_if<Measurement>(&take)) {
+    if (auto* measurement = std::get_if<Measurement>(&take))
         completeExcitation(*measurement);
-        settleEnds(*measurement);
-    }
     return take;
 }
 
@@ -75,7 +73,9 @@ const Record& PreparedTake::record() const
             options.setAside = sound->isOpen() ? std::vector {Quantity::pressure} : std::vector<Quantity> {};
             options.microphoneCorner = sound->rollOff;
         }
-        state_->record = makeRecord(*state_->averages, options);
+        auto settled = measurement();  // the check is of what was measured
+        state_->record = settleEnds(settled) > 0 ? makeRecord(settled, options)
+                                                 : makeRecord(*state_->averages, options);
     });
     return state_->record;
 }

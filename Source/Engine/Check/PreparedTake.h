@@ -10,8 +10,7 @@
 namespace excursion {
 
 /// A take that was made ready, once, for all that is asked of it: its excitation is completed (completeExcitation()),
-/// the ends of its sections are settled (settleEnds()), it is checked, and it is cut into sections that models are
-/// compared with. All that works on a take as a whole asks
+/// it is checked, and it is cut into sections that models are compared with. All that works on a take as a whole asks
 /// for one of these. Copies share the take; any thread may read it.
 class PreparedTake {
 public:
@@ -31,10 +30,10 @@ public:
     /// Made when it is first asked for.
     const CheckReport& report() const;
 
-    /// The take cut into sections (MakeRecord.h), with the pressure as the check has found its path
-    /// (CheckReport::sound): corrected by the microphone's roll-off, or set aside; so it checks the take. Made when it
-    /// is first asked for; a copy of it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and
-    /// when the take is a frequency response.
+    /// The take cut into sections (MakeRecord.h) whose ends are settled (settleEnds()), with the pressure as the check
+    /// has found its path (CheckReport::sound): corrected by the microphone's roll-off, or set aside; so it checks the
+    /// take. Made when it is first asked for; a copy of it is adapted to a model (adapt()). Throws Error (data) as
+    /// makeRecord() does, and when the take is a frequency response.
     const Record& record() const;
 
 private:

@@ -11,7 +11,7 @@ namespace excursion {
 namespace {
 
 constexpr std::size_t longest = 128, judged = 16;
-constexpr double clearly = 3.0 * 3.0;  // of powers
+constexpr double clearly = 3.0 * 3.0, growing = 2.0 * 2.0;  // of powers
 
 /// What has none is refused, with a reason, by who asks for periods.
 bool hasLongPeriods(const Measurement& take)
@@ -42,12 +42,20 @@ std::vector<double> periodBefore(const Measurement& take, const Channel& channel
     return mean;
 }
 
-double meanSquareOfDifference(std::span<const double> a, std::span<const double> b)
+double meanOf(std::span<const double> x)
 {
     double sum = 0.0;
-    for (std::size_t n = 0; n < a.size(); ++n)
-        sum += (a[n] - b[n]) * (a[n] - b[n]);
-    return sum / static_cast<double>(a.size());
+    for (const double value : x)
+        sum += value;
+    return sum / static_cast<double>(x.size());
+}
+
+double meanSquareOf(std::span<const double> x)
+{
+    double sum = 0.0;
+    for (const double value : x)
+        sum += value * value;
+    return sum / static_cast<double>(x.size());
 }
 
 }  // namespace
@@ -60,29 +68,29 @@ int settleEnds(Measurement& take)
     const auto N = static_cast<std::size_t>(e.period), length = std::min(longest, N / 16);
     int changed = 0;
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level)
-        for (int realization = 0; realization < e.realizations; ++realization) {
-            std::vector<std::vector<double>> before;
-            bool rings = false;
-            for (const auto& channel : take.channels) {
-                before.push_back(periodBefore(take, channel, level, realization));
-                if (before.back().empty())
+        for (int realization = 0; realization < e.realizations; ++realization)
+            for (auto& channel : take.channels) {
+                const auto before = periodBefore(take, channel, level, realization);
+                if (before.empty())
                     return 0;
                 const auto last = onePeriod(take, channel, level, realization, e.periods - 1);
-                const std::span<const double> steady = before.back();
-                rings = rings
-                        || meanSquareOfDifference(last.last(judged), steady.last(judged))
-                               > clearly * meanSquareOfDifference(last.first(N - length), steady.first(N - length));
+                std::vector<double> difference(3 * length);
+                for (std::size_t n = 0; n < difference.size(); ++n)
+                    difference[n] = last[N - difference.size() + n] - before[N - difference.size() + n];
+                const double drift = meanOf(std::span(difference).first(2 * length));
+                for (double& value : difference)
+                    value -= drift;
+                const std::span<const double> all(difference);
+                const double rest = clearly * meanSquareOf(all.first(2 * length)), end = meanSquareOf(all.last(judged));
+                const bool begins = meanSquareOf(all.subspan(2 * length, judged)) <= rest,
+                           grows = end > growing * meanSquareOf(all.subspan(3 * length - 2 * judged, judged));
+                if (!(end > rest) || !begins || !grows || end > meanSquareOf(last))
+                    continue;
+                ++changed;
+                const auto place = static_cast<std::size_t>(last.data() - channel.samples.data()) + N - length;
+                for (std::size_t n = 0; n < length; ++n)
+                    channel.samples[place + n] = before[N - length + n] + drift;
             }
-            if (!rings)
-                continue;
-            ++changed;
-            for (std::size_t c = 0; c < take.channels.size(); ++c) {
-                const auto last = onePeriod(take, take.channels[c], level, realization, e.periods - 1);
-                const auto end = last.data() - take.channels[c].samples.data() + static_cast<std::ptrdiff_t>(N);
-                std::copy(before[c].end() - static_cast<std::ptrdiff_t>(length), before[c].end(),
-                          take.channels[c].samples.begin() + end - static_cast<std::ptrdiff_t>(length));
-            }
-        }
     return changed;
 }
 
