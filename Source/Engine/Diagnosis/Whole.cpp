@@ -146,7 +146,10 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
         if (!one.plausible)
             return false;
         constexpr double doubtful = 1.0;  // dB, of what may only be another effect's wrong shape
-        const bool completes = whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
+        // What is at the noise needs all that keeps it there, what is only near it what brings it nearer.
+        const bool completes = whole.fit.chiSquaredPerValue > atNoise
+                                   ? one.vote.uniqueDb > hardlyNeeded
+                                   : whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
         return unknownLeft ? one.vote.standsAlone()
                            : completes || (one.vote.backs() && !(one.suspect && one.vote.uniqueDb < doubtful));
     };
