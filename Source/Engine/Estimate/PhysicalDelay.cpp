@@ -88,6 +88,10 @@ std::function<Complex(Complex)> power(double exponent)
 
 double decibels(double ratio) { return 20.0 * std::log10(ratio); }
 
+/// A delay that turns phases all round leaves nothing in place without it, and next to nothing out of place with it; a
+/// mode of the cone or a part that swings on it is only bent to look like one.
+constexpr double roundFrom = 2.0, roundFall = 10.0;  // rad, dB
+
 struct Thresholds {
     double radians;  ///< phase that the delay turns at the top of the band
     double fall;     ///< dB that the relative error falls
@@ -109,9 +113,6 @@ PhysicalDelay judge(const std::vector<DelayFit>& fits, double highestOmega, cons
     PhysicalDelay verdict;
     verdict.seconds = best.seconds;
     verdict.standardError = best.standardError;
-    // A delay that turns phases all round leaves nothing in place without it, and next to nothing out of place with it;
-    // a mode of the cone or a part that swings on it is only bent to look like one.
-    constexpr double roundFrom = 2.0, roundFall = 10.0;  // rad, dB
     const double turned = std::abs(best.seconds) * highestOmega,
                  fall = std::max(thresholds.fall, turned > roundFrom ? roundFall : 0.0);
     verdict.conclusive = best.relativeError < 0.3;
@@ -257,19 +258,20 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
         basis.push_back(power(2.6));
     }
     fits.push_back(fitLines(lines, basis));
-    auto verdict = judge(fits, lines.back().omega,
-                         drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
-                                                         : Thresholds {.radians = 1.0, .fall = 6.0});
+    auto thresholds = drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
+                                                      : Thresholds {.radians = 1.0, .fall = 6.0};
+    std::vector<DelayFit> lower;
+    for (const double share : {0.5, 0.7})
+        if (const auto below = band(lines, 0.0, share * lines.back().omega); below.size() >= 2 * basis.size())
+            lower.push_back(fitLines(below, basis));
+    if (lower.empty())
+        thresholds.fall = roundFall;  // nothing else confirms it
+    auto verdict = judge(fits, lines.back().omega, thresholds);
     // A mode of the cone turns the phase at its own frequency, a delay everywhere.
-    for (const double share : {0.5, 0.7}) {
-        const auto lower = band(lines, 0.0, share * lines.back().omega);
-        if (lower.size() < 2 * basis.size())
-            continue;
-        const auto fit = fitLines(lower, basis);
+    for (const auto& fit : lower)
         verdict.clear = verdict.clear
                         && std::abs(fit.seconds - verdict.seconds)
                                < 0.25 * std::abs(verdict.seconds) + 3.0 * fit.standardError;
-    }
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
                        && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Estimate/PhysicalDelay.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+using namespace excursion;
+
+namespace {
+
+constexpr double f0 = 40.0, w0 = 2.0 * std::numbers::pi * f0;
+
+/// Velocity over force of m s^2 + r s + k, with a mass on a spring of its own beside the cone's.
+/// @param apart   its resonance over that of the cone; 0: none
+/// @param share   its mass over the cone's
+Frf mobility(double apart, double share, double q, double spacing, double late)
+{
+    Frf frf;
+    const double w1 = apart * w0;
+    for (double f = spacing; f < 20.0 * f0; f += spacing) {
+        const std::complex<double> s(0.0, 2.0 * std::numbers::pi * f);
+        const auto part = apart > 0.0 ? share * w1 * w1 / (s * s + s * w1 / q + w1 * w1) : 0.0;
+        const auto force = s * s * (1.0 + part) + 0.5 * w0 * s + w0 * w0;
+        frf.frequency.push_back(f);
+        frf.value.push_back(s / force * std::exp(-s * late));
+        frf.noiseVariance.push_back(1e-8 * std::norm(frf.value.back()));
+    }
+    return frf;
+}
+
+}  // namespace
+
+TEST_CASE("A motion that is late is told to a few microseconds, and one that is not is acquitted", "[delay]")
+{
+    for (const double late : {-8e-4, 1e-4, 5e-4}) {
+        const auto told = motionDelay(mobility(0.0, 0.0, 1.0, 5.0, late), Quantity::velocity, MotionReference::force);
+        CHECK(told.clear);
+        CHECK(told.seconds == Approx(late).margin(3e-6));
+    }
+    const auto none = motionDelay(mobility(0.0, 0.0, 1.0, 5.0, 0.0), Quantity::velocity, MotionReference::force);
+    CHECK(none.conclusive);
+    CHECK_FALSE(none.clear);
+}
+
+TEST_CASE("A part that swings on the cone does not pass for a delay where few lines are left to tell", "[delay]")
+{
+    int judged = 0;
+    for (const double apart : {3.0, 4.0, 5.0, 6.5})
+        for (const double share : {0.1, 0.2, 0.4})
+            for (const double q : {3.0, 6.0, 12.0})
+                for (const double spacing : {5.0, 6.0, 7.0, 8.0}) {
+                    const auto told = motionDelay(mobility(apart, share, q, spacing, 0.0), Quantity::velocity,
+                                                  MotionReference::force);
+                    INFO(apart << " " << share << " " << q << " " << spacing << ": " << told.seconds);
+                    CHECK_FALSE(told.clear);
+                    judged += told.conclusive ? 1 : 0;
+                }
+    CHECK(judged > 20);
+}
