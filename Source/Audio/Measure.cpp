@@ -126,9 +126,7 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
                + " has a limit and does not answer what is played, though the rise has come to "
                + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
                + " dB below full level: look at its sensor and cable, or take the limit off.";
-    case Ending::Kind::noInput:
-        return "The inputs of the device give nothing, " + momentOf(ending)
-               + ": choose the device and its inputs again.";
+    case Ending::Kind::noInput: return "The inputs of the device gave nothing, " + momentOf(ending) + ".";
     case Ending::Kind::frozen:
         return "No input has moved any more from " + figure(ending.seconds, "%.1f")
                + " s of the plan on: the device has lost its connection, or its cables have.";
@@ -216,15 +214,15 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
             if (procedure.heard()[k] < 1.1)
                 result.remarks.push_back("The " + inputText(procedureOptions.inputs[k])
                                          + " is no louder at full level than in silence: is it connected?");
-        if (ending.kind == Ending::Kind::broken || ending.kind == Ending::Kind::overrun) {
+        if (ending.kind == Ending::Kind::broken || ending.kind == Ending::Kind::overrun
+            || ending.kind == Ending::Kind::noInput) {
             lost = sentenceOf(ending, procedureOptions);
             risen = risen || isRecorded(ending.stage);
             result.remarks.push_back(lost + " All of it was played again.");
             continue;
         }
         if (ending.kind != Ending::Kind::complete)
-            throw Error(ending.kind == Ending::Kind::frozen || ending.kind == Ending::Kind::noInput ? Error::Kind::input
-                                                                                                    : Error::Kind::data,
+            throw Error(ending.kind == Ending::Kind::frozen ? Error::Kind::input : Error::Kind::data,
                         sentenceOf(ending, procedureOptions));
         result.attempts = attempt;
         return result;

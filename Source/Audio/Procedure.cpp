@@ -16,6 +16,7 @@ constexpr double riseDb = 40.0;      // from quiet to full
 constexpr double holdSeconds = 0.2;  // in full, before the period that is judged: devices deliver late
 constexpr double judgedDb = 12.0;    // below full, from where on something must be heard
 constexpr double heardRatio = 2.0;   // of the rms in silence
+constexpr double seenRatio = 1.2;    // the same, of an input with a limit, which may be a quiet sensor
 constexpr double frozenSeconds = 0.5;
 constexpr float clippingAt = 0.9999f;  // the largest sample of 16 bits is 0.99997
 
@@ -210,6 +211,7 @@ void Procedure::look(const Block& block, std::size_t frame)
         } else {
             const double beside = x - watch.offset;
             watch.window += beside * beside;
+            watch.windowSum += beside;
         }
         if (watched.limit) {
             const bool fromRest = watched.quantity == Quantity::displacement;
@@ -240,18 +242,20 @@ void Procedure::closeWindow()
 {
     bool any = false;
     for (std::size_t k = 0; k < watches_.size(); ++k) {
-        const double power = watches_[k].window / static_cast<double>(options_.loudest.size());
+        const auto count = static_cast<double>(options_.loudest.size());
+        const double mean = watches_[k].windowSum / count,  // where a sensor has drifted to
+            power = std::max(0.0, watches_[k].window / count - mean * mean);
         // as far as one sample of 24 bits, where the silence was perfect
         heard_[k] = std::sqrt(power / std::max(watches_[k].power, 1e-14));
         any = any || heard_[k] > heardRatio;
-        watches_[k].window = 0.0;
+        watches_[k].window = watches_[k].windowSum = 0.0;
     }
     if (windowGain_ <= std::pow(10.0, -judgedDb / 20.0))
         return;
     if (!any)
         end(Ending::Kind::unheard);
     for (std::size_t k = 0; k < watches_.size(); ++k)
-        if (options_.inputs[k].limit && heard_[k] <= heardRatio)
+        if (options_.inputs[k].limit && heard_[k] <= seenRatio)
             end(Ending::Kind::unseen, k);
 }
 
@@ -276,7 +280,7 @@ void Procedure::advance()
                 closeWindow();
             else
                 for (auto& watch : watches_)
-                    watch.window = 0.0;
+                    watch.window = watch.windowSum = 0.0;
         }
     }
     while (now_ != Stage::ended && at_ >= lengthOf(now_)) {
@@ -285,7 +289,7 @@ void Procedure::advance()
             closeListening();
             enter(riseLength_ > 0 ? Stage::rising : Stage::pausing);
             for (auto& watch : watches_)
-                watch.window = 0.0;
+                watch.window = watch.windowSum = 0.0;
             break;
         case Stage::rising: enter(Stage::pausing); break;
         case Stage::pausing: enter(Stage::playing); break;

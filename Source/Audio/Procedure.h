@@ -111,6 +111,7 @@ private:
     struct Watch {
         double offset = 0.0, power = 0.0;  ///< sums while listening, then mean and variance
         double window = 0.0;               ///< sum of squares of the present window
+        double windowSum = 0.0;
         float last = 0.0f;
         std::atomic<float> peak {0.0f};
         std::atomic<bool> clipped {false};

@@ -108,7 +108,7 @@ void run(PnlssArguments options, Terminal& terminal)
 {
     require(options);
     PnlssTake data;
-    data.take = PreparedTake(readMeasurement(options.response.path)).measurement();
+    data.take = PreparedTake(readMeasurement(options.response.path)).settled();
     data.take.levelOf(options.response.level);  // asked before the work, not in it
     const auto kept = options.model.empty() ? nlohmann::json() : readJson(options.model);
     choose(options, kept, data);

@@ -88,7 +88,7 @@ FittedPnlss pnlssOf(const PreparedTake& take, const Identified& linear, const Pn
     if (linear.delay != 0.0)
         throw Error(Error::Kind::data, "The linear model has a delay, which the states of a polynomial model do not "
                                        "hold; stabilize it in another way.");
-    const auto& measurement = take.measurement();
+    const auto& measurement = take.settled();
     const auto *input = measurement.find(linear.response.input), *output = measurement.find(linear.response.output);
     if (input == nullptr || output == nullptr)
         throw Error(Error::Kind::data, "The take has not the channels of the linear model; identify one of it.");

@@ -226,7 +226,7 @@ void MeasuringPanel::start()
             throw Error(
                 Error::Kind::usage,
                 "Choose an input for the voltage at the terminals and at least one other, such as the current.");
-        if (waits_)
+        if (window_.processor().session().keeps())
             throw Error(Error::Kind::usage,
                         "What was measured last waits for the work that is under way: cancel that, or wait.");
         window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
@@ -268,13 +268,12 @@ void MeasuringPanel::tick()
         showProgress();
     else if (measuring_)
         take();
-    if (!waits_)
+    if (!window_.processor().session().keeps())
         return;
     if (window_.processor().session().status().busy) {  // a fit that is under way is not to end for it
         preview_.setText("Measured; waits for the work that is under way.", juce::dontSendNotification);
         return;
     }
-    waits_ = false;
     window_.processor().session().openKept();
     preview();
 }
@@ -292,7 +291,6 @@ void MeasuringPanel::take()
         }
         window_.processor().session().keep(std::move(recorded.recording), "Measured with " + recorded.device,
                                            std::move(recorded.remarks));
-        waits_ = true;
     } catch (const std::exception& error) {
         end();
         window_.tell(words(error.what()), true);

@@ -64,7 +64,6 @@ private:
     juce::TextEditor levels_, low_, high_, fullScale_;
     juce::ComboBox outputChannel_;
     std::unique_ptr<Measuring> measuring_;
-    bool waits_ = false;  ///< what was measured, for the session to have time
 };
 
 }  // namespace excursion::plugin

@@ -12,7 +12,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr double jitter = 0.05;  // s, by which a computer calls late without harm where it tells less of its buffers
+constexpr double jitter = 0.05;  // s, by which a device may call late that does not tell how long its buffers are
 
 }  // namespace
 
@@ -54,7 +54,7 @@ OpenDevice::OpenDevice(juce::AudioDeviceManager& manager, std::vector<int> input
                             + std::max(0, device->getInputLatencyInSamples());
         const double block = device->getCurrentBufferSizeSamples() / device->getCurrentSampleRate();
         buffered_ = block + latency / device->getCurrentSampleRate();
-        lostAfter_ = std::max(buffered_, 2.0 * block) + jitter;
+        lostAfter_ = std::max(buffered_, 2.0 * block) + (latency > 0 ? 0.0 : jitter);
     }
     manager_.addAudioCallback(this);
 }

@@ -8,6 +8,7 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 
 #include <filesystem>
+#include <utility>
 
 namespace excursion::plugin {
 namespace {
@@ -170,7 +171,8 @@ void Session::take(PreparedTake take, const Findings& told, const Progress& prog
     put({});  // those of another take
     {
         const std::lock_guard lock(mutex_);
-        recording_ = nullptr;
+        if (!keeps_)
+            recording_ = nullptr;
     }
     publish(fresh);
     improvement_.emplace(std::move(work));
@@ -215,6 +217,13 @@ void Session::keep(RecordingOptions recorded, const std::string& source, std::ve
     recording_ = std::make_shared<const RecordingOptions>(std::move(recorded));
     recorded_ = from(source);
     recorded_.remarks = std::move(remarks);
+    keeps_ = true;
+}
+
+bool Session::keeps() const
+{
+    const std::lock_guard lock(mutex_);
+    return keeps_;
 }
 
 void Session::openKept()
@@ -223,11 +232,11 @@ void Session::openKept()
     Findings told;
     {
         const std::lock_guard lock(mutex_);
+        if (!std::exchange(keeps_, false))
+            return;
         recording = recording_;
         told = recorded_;
     }
-    if (!recording)
-        return;
     cancel();
     order([this, recording, told](const Progress& progress) {
         try {

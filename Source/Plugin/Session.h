@@ -63,8 +63,9 @@ public:
 
     void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    /// A recording that was just made; it is there to be saved until it is opened or another one is kept.
+    /// A recording that was just made, until it is opened, whatever else is meanwhile.
     void keep(RecordingOptions, const std::string& source, std::vector<std::string> remarks);
+    bool keeps() const;
     void openKept();  ///< as importRecording(); nothing where none is kept
     void add(const std::string& effect);
     void undo();
@@ -129,7 +130,8 @@ private:
     Status status_;
     std::shared_ptr<const Findings> findings_;
     std::shared_ptr<const RecordingOptions> recording_;
-    Findings recorded_;  ///< what is told of it
+    Findings recorded_;   ///< what is told of it
+    bool keeps_ = false;  ///< it has not been opened yet
     Identification identification_;
     std::optional<Adapted> adapted_;
     std::jthread thread_;

@@ -68,7 +68,7 @@ void Session::saveRecording(const std::string& folder)
             draft.publish();
             {
                 const std::lock_guard lock(mutex_);
-                if (recording_ == recording)
+                if (recording_ == recording && !keeps_)
                     recording_ = nullptr;
             }
             say("Wrote " + folder + ": the recording, its plan, and how it is imported.");

@@ -54,8 +54,9 @@ struct DeviceThread {
     {
         audio::ProcedureOptions options;
         options.sampleRate = 8000.0;
-        options.sound.assign(8000, 0.1f);
-        options.loudest.assign(800, 0.1f);
+        for (int n = 0; n < 8000; ++n)
+            options.sound.push_back(n % 8 < 4 ? 0.1f : -0.1f);
+        options.loudest.assign(options.sound.begin(), options.sound.begin() + 800);
         options.inputs = {{0, Quantity::voltage, 1.0, limit}, {1, Quantity::displacement, 1.0, limit}};
         options.recorded = 2;
         options.rise = 1.0;

@@ -40,6 +40,10 @@ TEST_CASE("A motion that is late is told to a few microseconds, and one that is 
         CHECK(told.clear);
         CHECK(told.seconds == Approx(late).margin(3e-6));
     }
+    // also where only a few lines are left to tell
+    const auto few = motionDelay(mobility(0.0, 0.0, 1.0, 40.0, 5e-4), Quantity::velocity, MotionReference::force);
+    CHECK(few.clear);
+    CHECK(few.seconds == Approx(5e-4).margin(3e-6));
     const auto none = motionDelay(mobility(0.0, 0.0, 1.0, 5.0, 0.0), Quantity::velocity, MotionReference::force);
     CHECK(none.conclusive);
     CHECK_FALSE(none.clear);

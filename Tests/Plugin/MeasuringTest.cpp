@@ -270,3 +270,29 @@ TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
     CHECK(app.status().contains("holds a take or a recording already"));
     folder.deleteRecursively();
 }
+
+TEST_CASE("What was measured waits for the work that is under way, whatever else is opened or saved", "[plugin][slow]")
+{
+    App app("1");
+    auto& session = app.processor.session();
+    plugin::click(*app.editor, "Start measuring");
+    session.open(plugin::VirtualOrder {"midbass", 3});
+    app.run();
+    app.editor->update();
+    REQUIRE(session.keeps());
+    plugin::click(*app.editor, "Start measuring");
+    CHECK(!app.panel().running());
+    CHECK(app.status().contains("waits"));
+    const auto folder = juce::File::createTempFile("waiting");
+    session.saveRecording(folder.getFullPathName().toStdString());
+    session.wait();
+    CHECK(folder.getChildFile("recording.wav").existsAsFile());
+    REQUIRE(session.keeps());
+    app.editor->update();  // it is opened
+    CHECK(!session.keeps());
+    plugin::settle(*app.editor);
+    REQUIRE(session.findings());
+    CHECK(juce::String(session.findings()->source).contains("Measured with Virtual loudspeaker"));
+    CHECK(!session.recordingWithoutTake());
+    folder.deleteRecursively();
+}

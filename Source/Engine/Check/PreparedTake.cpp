@@ -32,7 +32,8 @@ struct PreparedTake::State {
 
     const Take take;
     std::optional<AveragedPeriods> averages;  // what the check and the record ask for, of a take in time
-    mutable std::once_flag checked, cut;
+    mutable std::once_flag checked, cut, ended;
+    mutable std::optional<Measurement> settled;  // where it is another
     mutable CheckReport report;
     mutable Record record;
 };
@@ -56,6 +57,17 @@ const Measurement& PreparedTake::measurement() const
     throw Error(Error::Kind::data, "This take is a frequency response; waveforms are needed here.");
 }
 
+const Measurement& PreparedTake::settled() const
+{
+    const auto& raw = measurement();
+    std::call_once(state_->ended, [&] {
+        auto settled = raw;
+        if (settleEnds(settled) > 0)
+            state_->settled = std::move(settled);
+    });
+    return state_->settled ? *state_->settled : raw;
+}
+
 const CheckReport& PreparedTake::report() const
 {
     std::call_once(state_->checked, [this] {
@@ -73,9 +85,8 @@ const Record& PreparedTake::record() const
             options.setAside = sound->isOpen() ? std::vector {Quantity::pressure} : std::vector<Quantity> {};
             options.microphoneCorner = sound->rollOff;
         }
-        auto settled = measurement();  // the check is of what was measured
-        state_->record = settleEnds(settled) > 0 ? makeRecord(settled, options)
-                                                 : makeRecord(*state_->averages, options);
+        state_->record = &settled() == inTime() ? makeRecord(*state_->averages, options)
+                                                : makeRecord(settled(), options);
     });
     return state_->record;
 }

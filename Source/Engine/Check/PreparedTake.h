@@ -27,10 +27,14 @@ public:
     /// The take in time. Throws Error (data) when it is a frequency response.
     const Measurement& measurement() const;
 
-    /// Made when it is first asked for.
+    /// The take in time with the ends of its sections settled (settleEnds()): what models are fitted to. Made when it
+    /// is first asked for; the take itself where nothing rings.
+    const Measurement& settled() const;
+
+    /// Of what was measured. Made when it is first asked for.
     const CheckReport& report() const;
 
-    /// The take cut into sections (MakeRecord.h) whose ends are settled (settleEnds()), with the pressure as the check
+    /// The settled take cut into sections (MakeRecord.h), with the pressure as the check
     /// has found its path (CheckReport::sound): corrected by the microphone's roll-off, or set aside; so it checks the
     /// take. Made when it is first asked for; a copy of it is adapted to a model (adapt()). Throws Error (data) as
     /// makeRecord() does, and when the take is a frequency response.

@@ -57,7 +57,7 @@ TakeResponse responseOf(const PreparedTake& take, const ResponsePorts& choice)
         response.input = input;
         return response;
     }
-    const auto& measurement = take.measurement();
+    const auto& measurement = take.settled();
     response.remarks = measurement.remarks;
     const auto input = choice.input.empty() ? measurement.input().quantity
                                             : channelNamed(measurement, choice.input).quantity;

@@ -141,15 +141,15 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
         whole.fit = refine(whole.model, record, options, progress.part(0.4, 0.5));
         tried.clear();
     }
+    const bool there = search.left(whole.model).isNoise();
     const auto keeps = [&](const Removal& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
             return false;
         constexpr double doubtful = 1.0;  // dB, of what may only be another effect's wrong shape
         // What is at the noise needs all that keeps it there, what is only near it what brings it nearer.
-        const bool completes = whole.fit.chiSquaredPerValue > atNoise
-                                   ? one.vote.uniqueDb > hardlyNeeded
-                                   : whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
+        const bool completes = there ? whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise
+                                     : one.vote.uniqueDb > (one.suspect ? doubtful : hardlyNeeded);
         return unknownLeft ? one.vote.standsAlone()
                            : completes || (one.vote.backs() && !(one.suspect && one.vote.uniqueDb < doubtful));
     };

@@ -258,20 +258,23 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
         basis.push_back(power(2.6));
     }
     fits.push_back(fitLines(lines, basis));
-    auto thresholds = drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
-                                                      : Thresholds {.radians = 1.0, .fall = 6.0};
-    std::vector<DelayFit> lower;
-    for (const double share : {0.5, 0.7})
-        if (const auto below = band(lines, 0.0, share * lines.back().omega); below.size() >= 2 * basis.size())
-            lower.push_back(fitLines(below, basis));
-    if (lower.empty())
-        thresholds.fall = roundFall;  // nothing else confirms it
+    const auto thresholds = drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
+                                                            : Thresholds {.radians = 1.0, .fall = 6.0};
     auto verdict = judge(fits, lines.back().omega, thresholds);
     // A mode of the cone turns the phase at its own frequency, a delay everywhere.
-    for (const auto& fit : lower)
+    bool confirmed = false;
+    for (const double share : {0.5, 0.7}) {
+        const auto lower = band(lines, 0.0, share * lines.back().omega);
+        if (lower.size() < 2 * basis.size())
+            continue;
+        const auto fit = fitLines(lower, basis);
         verdict.clear = verdict.clear
                         && std::abs(fit.seconds - verdict.seconds)
                                < 0.25 * std::abs(verdict.seconds) + 3.0 * fit.standardError;
+        confirmed = confirmed || 3.0 * fit.standardError < 0.5 * std::abs(verdict.seconds);
+    }
+    if (verdict.clear && !confirmed && !judge(fits, lines.back().omega, {thresholds.radians, roundFall}).clear)
+        verdict.clear = verdict.conclusive = false;  // nor is it acquitted
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
                        && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });

@@ -41,8 +41,9 @@ enum class MotionReference {
 /// plateau: a delay does not touch magnitudes. When the band ends too near the resonance, the whole band is used with
 /// a s^2 + b s + c + d log(s), d being creep and hysteresis. The delay is clear when it turns the phase by 0.2 rad
 /// (voltage drive: 1 rad), exceeds 5 standard errors, lets the error fall by 4.5 dB (6 dB; both 10 dB beyond 2 rad),
-/// and the lower half of the band says the same, as it does not when a mode of the cone turns the phase. Where that
-/// half holds too few lines to say anything, the error must fall by 10 dB. Inverted: a < 0.
+/// and the lower 0.5 and 0.7 of the band say the same, as they do not when a mode of the cone turns the phase. Where
+/// they hold too few lines to say anything, the error must fall by 10 dB, and nothing is said where it falls by less.
+/// Inverted: a < 0.
 /// @param motion  motion/drive with its variance
 PhysicalDelay motionDelay(const Frf& motion, Quantity, MotionReference);
 

@@ -141,7 +141,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "Models cannot be ranked: " + reason + ".");
-    const auto& take = given.measurement();
+    const auto& take = given.settled();
     const auto& input = take.input();
     const Channel* output = nullptr;
     for (const auto& channel : take.channels)
