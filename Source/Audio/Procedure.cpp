@@ -168,7 +168,7 @@ float Procedure::next()
 void Procedure::enter(Stage stage)
 {
     now_ = stage;
-    at_ = windowAt_ = still_ = 0;
+    at_ = still_ = 0;
     stage_.store(stage, std::memory_order_release);
 }
 

@@ -50,7 +50,7 @@ struct Ending {
 struct ProcedureOptions {
     double sampleRate = 0.0;     ///< Hz
     std::vector<float> sound;    ///< what is played, -1 .. 1
-    std::vector<float> loudest;  ///< a period as loud as what is loudest in it, which the rise repeats
+    std::vector<float> loudest;  ///< one period with the peak of `sound`; the rise repeats it
     std::vector<WatchedInput> inputs;
     std::vector<int> outputs {0};                                           ///< that play, from 0
     int recorded = 1;                                                       ///< inputs 0 .. recorded - 1 are recorded
@@ -71,10 +71,12 @@ struct ProcedureOptions {
 ///  - trailing: silence, as converters deliver later than they are fed;
 ///  - ended: silence.
 ///
-/// From anywhere it goes to fading, a cosine of `fade` seconds over what is being played, and then ended, when it is
-/// told to stop, an input reaches its limit or clips, or the device gives no inputs; when the rise has come within 12
-/// dB of its end and nothing arrives (no input is twice as loud, rms over a period, as in silence), or not at an input
-/// that has a limit; or, while the sound is played, when samples are lost or no input moves for half a second.
+/// It ends early, after a fade (a cosine of `fade` seconds) where something is being played:
+///  - when it is told to stop, an input reaches its limit or clips, or the device gives no inputs;
+///  - in the rise, within 12 dB of its end, when no input is twice as loud (rms over a period) as in silence, or one
+///  with
+///    a limit is not 1.2 times as loud;
+///  - when samples are lost while the inputs are recorded, or no input moves for half a second of sound.
 ///
 /// process() is for the thread of the device: it neither allocates nor locks nor calls the system.
 class Procedure : public Client {
@@ -138,7 +140,7 @@ private:
 
     std::atomic<Stage> stage_ {Stage::listening};
     Stage now_ = Stage::listening, under_ = Stage::listening;  ///< under_: what is faded
-    std::size_t at_ = 0, underAt_ = 0, windowAt_ = 0, still_ = 0;
+    std::size_t at_ = 0, underAt_ = 0, still_ = 0;
     double windowGain_ = 0.0;
     Ending ending_;
 

@@ -277,7 +277,7 @@ void run(const BlaArguments& options, Terminal& terminal)
     const PreparedTake prepared(readTake(options.take));
     if (prepared.asResponses())
         return showResponse(options, terminal);
-    const auto& take = prepared.measurement();
+    const auto& take = prepared.settled();
     const auto output = outputNamed(take, options.output, take.input().quantity).quantity;
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");

@@ -73,7 +73,8 @@ void requireFolderPlace(const std::string& folder)
 void requireApart(const std::string& read, const std::string& written)
 {
     std::vector<fs::path> reads {read}, writes {written};
-    for (const auto& files : {filesOfTake(read), filesOfPlan(read)})
+    const std::vector<fs::path> ladder {fs::path(read) / "ladder.json", fs::path(read) / "model.json"};
+    for (const auto& files : {filesOfTake(read), filesOfPlan(read), ladder})
         reads.insert(reads.end(), files.begin(), files.end());
     for (const auto& file : filesOfTake(written))
         writes.push_back(file);

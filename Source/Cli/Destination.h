@@ -11,8 +11,8 @@ void requireFilePlace(const std::string& file);  ///< a file can be written ther
 /// it is a folder that files can be written to, or can become one
 void requireFolderPlace(const std::string& folder);
 
-/// What is read stays as it is, whether a file or a take in a folder: throws Error (usage) where `written`, or a take
-/// in it, would replace it.
+/// Throws Error (usage) if writing to `written`, a file or the folder of a take, would replace `read`: a file, or a
+/// take, plan, ladder or model in a folder.
 void requireApart(const std::string& read, const std::string& written);
 
 }  // namespace excursion::cli

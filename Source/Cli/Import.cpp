@@ -112,22 +112,22 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
 
 std::variant<SweepTake, Spectra> readAny(const ImportArguments& options)
 {
-    const auto sorted = [](Take take) -> std::variant<SweepTake, Spectra> {
+    const auto asSweepTake = [](Take take) -> std::variant<SweepTake, Spectra> {
         if (auto* spectra = std::get_if<Spectra>(&take))
             return std::move(*spectra);
         return SweepTake {std::move(std::get<Measurement>(take)), {}};
     };
     if (endingOf(options.file) == ".mat")
-        return sorted(importMat(options.file, importOptions(options)));
+        return asSweepTake(importMat(options.file, importOptions(options)));
     const auto own = headerOf(options.file);
     if (own.empty() && endingOf(options.file) != ".wav")
-        return sorted(importText(options.file, importOptions(options)));
+        return asSweepTake(importText(options.file, importOptions(options)));
     if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean
         || !options.as.empty() || options.minimumPhase)
         throw Error(Error::Kind::usage,
                     "--map, --as, --rate, --from, --to, --remove-mean and --minimum-phase are for text and MAT files.");
     if (own.empty())
-        return sorted(readTake(options.file));
+        return asSweepTake(readTake(options.file));
     return readOwnTake(own);
 }
 

@@ -166,10 +166,19 @@ void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
         ->type_name("FILE.json");
 }
 
+void requireApart(const RecordingArguments& arguments)
+{
+    if (!arguments.plan.empty())
+        requireApart(planHeaderOf(arguments.plan).string(), arguments.out);
+    if (!arguments.calibration.empty())
+        requireApart(arguments.calibration, arguments.out);
+}
+
 void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
 {
     const bool text = endingOf(arguments.out) == ".csv";
     text ? requireFilePlace(arguments.out) : requireFolderPlace(arguments.out);
+    requireApart(arguments);
     const auto options = recordingOptions(arguments);
     auto imported = importRecording(options, terminal.progress());
     if (!arguments.name.empty())

@@ -29,6 +29,9 @@ bool isRecording(const std::string& file);
 
 void addRecordingOptions(CLI::App& verb, RecordingArguments&);
 RecordingOptions recordingOptions(const RecordingArguments&);  ///< reads plan and calibration; throws Error
+/// The plan and the calibration stay as they are (requireApart() of Destination.h).
+void requireApart(const RecordingArguments&);
+
 void importRecordings(const RecordingArguments&, Terminal&);
 
 /// What was found out about the time of each recording, what was assumed, and the channels of the take, for a person.

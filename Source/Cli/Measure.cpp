@@ -195,6 +195,7 @@ void requireComplete(const MeasureArguments& a)
     if (a.recording.out.empty())
         missing("--out");
     requireFolderPlace(a.recording.out);
+    requireApart(a.recording);
     if (!a.keep.empty())
         requireFilePlace(a.keep);
 }

@@ -126,7 +126,7 @@ void Editor::update()
     progress_.setVisible(busy);
     cancel_.setVisible(busy);
     const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes();
-    if (status.failedSaves != failedSaves_) {  // which what comes after it is not to hide at once
+    if (status.failedSaves != failedSaves_) {  // stays for some seconds; later words wait
         failedSaves_ = status.failedSaves;
         tell(words(status.notSaved), true);
         said_ = status.words;

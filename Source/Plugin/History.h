@@ -21,7 +21,8 @@ public:
     void undo();
     void redo();
     bool moving() const { return moving_; }  ///< within undo() or redo()
-    /// What the last undo() or redo() asked for has not come to pass: its step is as it was before.
+    /// Call it when what undo() or redo() asked for was cancelled or failed: puts the step back without carrying it
+    /// out.
     void failed();
 
 private:

@@ -41,7 +41,6 @@ public:
     ~Measuring();
 
     void stop() { stop_.request_stop(); }
-    bool stopped() const { return stop_.stop_requested(); }
     bool ended() const;
     audio::Status status() const;
     const std::vector<InputRole>& roles() const { return roles_; }

@@ -283,14 +283,12 @@ void MeasuringPanel::take()
 {
     try {
         auto recorded = measuring_->recorded();
-        const bool stopped = measuring_->stopped();
         end();
-        if (stopped) {
-            window_.tell("The measurement was stopped.", false);
-            return;
-        }
         window_.processor().session().keep(std::move(recorded.recording), "Measured with " + recorded.device,
                                            std::move(recorded.remarks));
+    } catch (const Error& error) {
+        end();
+        window_.tell(words(error.what()), error.kind() != Error::Kind::cancelled);
     } catch (const std::exception& error) {
         end();
         window_.tell(words(error.what()), true);

@@ -19,7 +19,7 @@ constexpr double jitter = 0.05;  // s, by which a device may call late that does
 class OpenDevice::Connection : public audio::Stream {
 public:
     explicit Connection(OpenDevice& device) : device_(device) {}
-    ~Connection() override { stop(); }
+    ~Connection() override { abandon(); }
 
     void start(audio::Client& client) override
     {
@@ -34,7 +34,12 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 
-    void abandon() override { stop(); }
+    void abandon() override
+    {
+        device_.client_ = nullptr;
+        for (int k = 0; k < 1000 && device_.inside_; ++k)  // a second: the thread of a device may have died within
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     bool running() const override { return device_.running_; }
 
 private:

@@ -171,7 +171,8 @@ void Session::take(PreparedTake take, const Findings& told, const Progress& prog
     put({});  // those of another take
     {
         const std::lock_guard lock(mutex_);
-        if (!keeps_)
+        // what the check refuses may have to be imported in another way, as with a latency
+        if (!keeps_ && fresh->report.fitForUse())
             recording_ = nullptr;
     }
     publish(fresh);

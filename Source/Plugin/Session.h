@@ -63,7 +63,7 @@ public:
 
     void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    /// A recording that was just made, until it is opened, whatever else is meanwhile.
+    /// Keeps a recording that was just made until openKept(), whatever else is opened meanwhile.
     void keep(RecordingOptions, const std::string& source, std::vector<std::string> remarks);
     bool keeps() const;
     void openKept();  ///< as importRecording(); nothing where none is kept
@@ -77,12 +77,13 @@ public:
     /// To the take, by what drifts with temperature and age.
     /// @param version  comes back with what comes of it
     void adapt(const Model&, std::uint64_t version);
-    // What is there now, in its turn, whatever is cancelled or opened meanwhile; the destructor waits for it.
+    // Saves what is there when the method is called. Neither cancel() nor another take drops the order; the destructor
+    // waits for it.
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
     void saveRecording(const std::string& folder);  ///< recordingWithoutTake(), with its plan and how it is imported
 
-    void cancel();  ///< what is under way, and what was ordered after it but to be saved
+    void cancel();  ///< stops what is under way, and drops all waiting orders except saves
 
     struct Status {
         bool busy = false;
@@ -96,7 +97,7 @@ public:
     };
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
-    /// What was recorded and is no take, or not yet; null: none. Until it is saved, or another take is there.
+    /// The last recording, until a take that is fit for use is made, or it is saved. Null: none.
     std::shared_ptr<const RecordingOptions> recordingWithoutTake() const;
     Identification identification() const;
     /// What came of the latest order to adapt, once.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session writes to files: what there is at the time of the order, which what comes meanwhile does not change.
+// What a session writes to files: what is there when it is asked for.
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"

@@ -160,7 +160,7 @@ void checkPhysics(const AveragedPeriods& averages, const std::vector<bool>& aliv
     // The voltage alone is off when some motion agrees with the current, closely enough to exclude that the current is.
     const bool motionSidesWithCurrent = std::any_of(motions.begin(), motions.end(), [&](const Motion& m) {
         const double samples = m.delay.seconds * take.sampleRate, error = m.delay.standardError * take.sampleRate;
-        return m.delay.conclusive && 5.0 * error < std::abs(currentLate)
+        return m.delay.conclusive && !m.delay.doubtful && 5.0 * error < std::abs(currentLate)
                && std::abs(samples) < 0.3 * std::abs(currentLate);
     });
     if (current.clear)

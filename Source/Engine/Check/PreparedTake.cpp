@@ -32,7 +32,7 @@ struct PreparedTake::State {
 
     const Take take;
     std::optional<AveragedPeriods> averages;  // what the check and the record ask for, of a take in time
-    mutable std::once_flag checked, cut, ended;
+    mutable std::once_flag checked, cut, settledOnce;
     mutable std::optional<Measurement> settled;  // where it is another
     mutable CheckReport report;
     mutable Record record;
@@ -60,7 +60,7 @@ const Measurement& PreparedTake::measurement() const
 const Measurement& PreparedTake::settled() const
 {
     const auto& raw = measurement();
-    std::call_once(state_->ended, [&] {
+    std::call_once(state_->settledOnce, [&] {
         auto settled = raw;
         if (settleEnds(settled) > 0)
             state_->settled = std::move(settled);

@@ -141,13 +141,13 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
         whole.fit = refine(whole.model, record, options, progress.part(0.4, 0.5));
         tried.clear();
     }
-    const bool there = search.left(whole.model).isNoise();
+    bool there = false;  // at the noise, once
     const auto keeps = [&](const Removal& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
             return false;
         constexpr double doubtful = 1.0;  // dB, of what may only be another effect's wrong shape
-        // What is at the noise needs all that keeps it there, what is only near it what brings it nearer.
+        // At the noise an effect stays if the model would leave the noise without it; near the noise if it is missed.
         const bool completes = there ? whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise
                                      : one.vote.uniqueDb > (one.suspect ? doubtful : hardlyNeeded);
         return unknownLeft ? one.vote.standsAlone()
@@ -155,7 +155,9 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
     for (int n = 0; n <= rounds; ++n) {
-        if (!search.left(whole.model).isNoise())
+        const bool isThere = search.left(whole.model).isNoise();
+        there = there || isThere;
+        if (!isThere)
             tried.clear();  // while something is missing, an effect may only seem to be missed beside others
         if (n == rounds)
             tried = search.tryWithout(whole.model, false);

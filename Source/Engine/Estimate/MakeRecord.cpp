@@ -185,10 +185,9 @@ int quietestRealization(const AveragedPeriods& averages)
     return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
 
-/// Lines of a section that is sampled with `length` samples in place of `window`: those that it had, or as many as it
-/// can have.
+/// Scales the lines of a DFT from `window` to `length` samples, and cuts them or adds zeros.
 template <class Value>
-void sampleAnew(std::vector<Value>& lines, std::size_t window, std::size_t length)
+void rescaleLines(std::vector<Value>& lines, std::size_t window, std::size_t length)
 {
     const double share = static_cast<double>(length) / static_cast<double>(window);
     lines.resize(length / 2 + 1);
@@ -202,15 +201,15 @@ void sampleAnew(Section& section, std::size_t length)
 {
     const auto window = section.window;
     auto input = fft(section.input);
-    sampleAnew(input, window, length);
+    rescaleLines(input, window, length);
     input[std::min(window, length) / 2] = 0.0;
     section.input = inverseFft(input, length);
     section.window = length;
     for (auto& measured : section.measured)
-        sampleAnew(measured, window, length);
+        rescaleLines(measured, window, length);
     for (auto* deviations : {&section.deviation, &section.silentDeviation})
         for (auto& deviation : *deviations)
-            sampleAnew(deviation, window, length);
+            rescaleLines(deviation, window, length);
     section.inputVariance.resize(std::min(length / 2 + 1, section.inputVariance.size()));
     const double share = static_cast<double>(length) / static_cast<double>(window);
     for (auto& variance : section.inputVariance)

@@ -273,8 +273,9 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
                                < 0.25 * std::abs(verdict.seconds) + 3.0 * fit.standardError;
         confirmed = confirmed || 3.0 * fit.standardError < 0.5 * std::abs(verdict.seconds);
     }
-    if (verdict.clear && !confirmed && !judge(fits, lines.back().omega, {thresholds.radians, roundFall}).clear)
-        verdict.clear = verdict.conclusive = false;  // nor is it acquitted
+    verdict.doubtful = verdict.clear && !confirmed
+                       && !judge(fits, lines.back().omega, {thresholds.radians, roundFall}).clear;
+    verdict.clear = verdict.clear && !verdict.doubtful;
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
                        && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });

@@ -13,7 +13,8 @@ struct PhysicalDelay {
     double standardError = 0.0;
     bool clear = false;       ///< the delay cannot be explained by the loudspeaker
     bool inverted = false;    ///< the sign cannot be explained by the loudspeaker
-    bool conclusive = false;  ///< the response was good enough to judge: "not clear" is then an acquittal
+    bool conclusive = false;  ///< the response was good enough to judge
+    bool doubtful = false;    ///< something looks like a delay and may be none; else "not clear" is an acquittal
 };
 
 /// Current against voltage, from the electrical impedance above the resonance,

@@ -19,7 +19,7 @@ bool hasLongPeriods(const Measurement& take)
     if (!take.excitation)
         return false;
     const auto& e = *take.excitation;
-    return e.period >= static_cast<int>(16 * judged) && e.periods >= 1 && e.settlePeriods >= 0 && e.realizations >= 1
+    return e.period >= static_cast<int>(32 * judged) && e.periods >= 1 && e.settlePeriods >= 0 && e.realizations >= 1
            && std::all_of(take.channels.begin(), take.channels.end(), [&e](const Channel& channel) {
                   return static_cast<long>(channel.samples.size()) >= e.totalSamples();
               });

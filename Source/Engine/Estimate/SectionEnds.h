@@ -5,18 +5,18 @@
 
 namespace excursion {
 
-/// Where a section ends and another realization or level begins, what is played jumps. Converters of linear phase, and
-/// the interpolation onto another clock, answer a jump before it comes, so the last samples of a section are not those
-/// of a steady state: some -60 dB of the signal, far above the noise of a good measurement, which they would be taken
-/// for. This finds it by what a channel's last period differs from the mean of those before (with one used period: from
-/// the settling one before it). The last 128 samples, or a sixteenth of a shorter period, ring when that difference
-///   - is more than three times as large, rms, in the last 16 samples as in twice that stretch before it,
-///   - is no larger at the begin of the stretch, and half as large at most in the 16 samples before the last 16, as
-///     ringing grows towards the jump, and
-///   - is smaller than the channel itself, as what was lost or exchanged is not.
-/// Then they are those of the periods before, by as much higher or lower as the rest of the period is. A take without
-/// periods, or too short for them, stays as it is.
-/// @return how often that was done, over all sections and channels
+/// At the end of a section, what is played jumps to another realization or level. Converters of linear phase, and an
+/// interpolation onto another clock, answer the jump before it comes, at some -60 dB of the signal. A fit would take
+/// that for noise. The last period of a channel is compared with the mean of the periods before it (of one used period:
+/// with the settling period before it). The end is the last 128 samples, or a sixteenth of a shorter period. It is
+/// replaced where the difference, less its mean over the two lengths before the end,
+///   - is in the last 16 samples more than 3 times (rms) that of those two lengths,
+///   - is in the first 16 samples of the end at most 3 times that,
+///   - at least doubles from the 16 samples before the last 16 to the last 16, and
+///   - is smaller there than the channel itself.
+/// The replacement is the mean of the earlier periods, plus that mean difference. A take without periods of 512 samples
+/// or more stays as it is.
+/// @return the number of ends that were replaced, over all sections and channels
 int settleEnds(Measurement&);
 
 }  // namespace excursion
