@@ -2,6 +2,7 @@
 #include "Engine/Estimate/SectionEnds.h"
 
 #include "Engine/Estimate/Periods.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <span>
@@ -11,7 +12,7 @@ namespace excursion {
 namespace {
 
 constexpr std::size_t longest = 128, judged = 16;
-constexpr double clearly = 3.0 * 3.0, growing = 2.0 * 2.0;  // of powers
+constexpr double clearly = 3.0, growing = 2.0;  // of rms
 
 /// What has none is refused, with a reason, by who asks for periods.
 bool hasLongPeriods(const Measurement& take)
@@ -50,14 +51,6 @@ double meanOf(std::span<const double> x)
     return sum / static_cast<double>(x.size());
 }
 
-double meanSquareOf(std::span<const double> x)
-{
-    double sum = 0.0;
-    for (const double value : x)
-        sum += value * value;
-    return sum / static_cast<double>(x.size());
-}
-
 }  // namespace
 
 int settleEnds(Measurement& take)
@@ -81,10 +74,10 @@ int settleEnds(Measurement& take)
                 for (double& value : difference)
                     value -= drift;
                 const std::span<const double> all(difference);
-                const double rest = clearly * meanSquareOf(all.first(2 * length)), end = meanSquareOf(all.last(judged));
-                const bool begins = meanSquareOf(all.subspan(2 * length, judged)) <= rest,
-                           grows = end > growing * meanSquareOf(all.subspan(3 * length - 2 * judged, judged));
-                if (!(end > rest) || !begins || !grows || end > meanSquareOf(last))
+                const double rest = clearly * rmsOf(all.first(2 * length)), end = rmsOf(all.last(judged));
+                const bool quietFirst = rmsOf(all.subspan(2 * length, judged)) <= rest,
+                           grows = end > growing * rmsOf(all.subspan(3 * length - 2 * judged, judged));
+                if (!(end > rest) || !quietFirst || !grows || end > rmsOf(last))
                     continue;
                 ++changed;
                 const auto place = static_cast<std::size_t>(last.data() - channel.samples.data()) + N - length;
