@@ -50,7 +50,7 @@ Measurement measure(const Loudspeaker& speaker, const BenchSetup& setup, const P
         plan.lines = excitedLines(plan, setup.sampleRate, gridChoice);
     }
 
-    const auto voltage = drive(plan, setup.sampleRate, setup.seed, tail);
+    const auto voltage = drive(plan, setup.sampleRate, setup.seed, tail, setup.jumps);
     auto record = run(speaker, voltage, setup.sampleRate, setup.channels, setup.microphoneDistance, 0.5 * plan.bandLow,
                       setup.oversampling, progress);
 

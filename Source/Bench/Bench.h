@@ -33,6 +33,9 @@ struct BenchSetup {
     NoiseColour noiseColour = NoiseColour::white;
     std::uint64_t seed = 1;  ///< seed of the multisines and of the noise
     std::vector<Fault> faults;
+    /// The steady state of each multisine is cut short by the next one, without a crossfade: what the converters ring
+    /// before such a jump lies in the last kept period.
+    bool jumps = false;
     int oversampling = 0;  ///< steps of the simulation per sample; 0: chosen
 };
 

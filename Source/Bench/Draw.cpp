@@ -102,6 +102,7 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
     result.speaker = drawLinear(result.driver, driverChoice);
     result.setup = drawSetup(result.speaker, options, setupChoice);
     result.setup.seed = seed;
+    result.setup.jumps = options.jumps.value_or(Random(seed, 15).chance(0.5));
 
     const double target = levelChoice.uniform(0.5, 0.8) * result.speaker.xmax;
     scaleLevels(result.setup, target / visit(result.speaker, result.setup).displacement);

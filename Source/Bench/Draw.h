@@ -25,8 +25,9 @@ struct DrawOptions {
     std::optional<double> noiseDb;                    ///< drawn from -50 .. -85
     std::optional<double> sampleRate;                 ///< drawn from 44.1, 48, 88.2 and 96 kHz
     std::optional<std::vector<Quantity>> channels;
-    std::string oddity;     ///< a name of oddityNames(); empty: none
-    double seconds = 12.0;  ///< approximate; with long periods up to twice as long
+    std::optional<bool> jumps;  ///< of BenchSetup, drawn: 1 in 2
+    std::string oddity;         ///< a name of oddityNames(); empty: none
+    double seconds = 12.0;      ///< approximate; with long periods up to twice as long
 };
 
 /// The range of the linear driver at the loudest level: over these ranges, laws change by their strength.

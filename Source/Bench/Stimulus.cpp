@@ -63,7 +63,7 @@ std::vector<double> multisine(const Excitation& plan, const std::vector<int>& li
     return inverseFft(spectrum, N);
 }
 
-std::vector<double> drive(const Excitation& plan, double sampleRate, std::uint64_t seed, int tail)
+std::vector<double> drive(const Excitation& plan, double sampleRate, std::uint64_t seed, int tail, bool jumps)
 {
     Random gridChoice(seed, 1);
     const auto lines = plan.lines.empty() ? excitedLines(plan, sampleRate, gridChoice) : plan.lines;
@@ -86,7 +86,7 @@ std::vector<double> drive(const Excitation& plan, double sampleRate, std::uint64
             for (long n = 0; n < part; ++n) {
                 const auto at = static_cast<std::size_t>(n % period);
                 double value = level * wave[at];
-                if (n < hold + fade) {
+                if (n < hold + fade && (!jumps || !before)) {
                     const double weight = n < hold ? 0.0 : fadeIn(n - hold);
                     value = weight * value + (before ? (1.0 - weight) * gainBefore * (*before)[at] : 0.0);
                 }

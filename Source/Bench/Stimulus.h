@@ -21,7 +21,8 @@ std::vector<double> multisine(const Excitation&, const std::vector<int>& lines, 
 /// that continue the last period and fade out. The phases of a realization are the same at every level. If one
 /// multisine follows another, the old one continues for 256 samples of the new one's settling time, and the two are
 /// crossfaded over the next 1024 (an error function, so that nothing leaves the band). The first one fades in. So every
-/// kept period is exactly periodic up to its last sample.
-std::vector<double> drive(const Excitation&, double sampleRate, std::uint64_t seed, int tail);
+/// kept period is exactly periodic up to its last sample. With `jumps` one follows the other at once, as in the file of
+/// a plain player.
+std::vector<double> drive(const Excitation&, double sampleRate, std::uint64_t seed, int tail, bool jumps = false);
 
 }  // namespace excursion::bench

@@ -207,6 +207,17 @@ double relativeDifference(std::span<const double> earlier, std::span<const doubl
     return power > 0.0 ? difference / power : 0.0;
 }
 
+/// The median of the differences that the other realizations have between the same two periods: a motion that has not
+/// settled makes those of the first pair large in most of them. 0 without others.
+double atSamePeriod(const std::vector<PeriodJump>& pairs, const std::vector<double>& differences, std::size_t own)
+{
+    std::vector<double> others;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (i != own && pairs[i].period == pairs[own].period)
+            others.push_back(differences[i]);
+    return others.empty() ? 0.0 : medianOf(others);
+}
+
 /// PeriodJump::moved: what the best two steps among blocks of the difference span.
 double restMoved(std::span<const double> earlier, std::span<const double> later)
 {
@@ -324,6 +335,7 @@ std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Chann
         if (pairs.size() < 3)
             continue;
         // Most pairs are sound; thousands of lines make their differences equal within a few percent.
+        constexpr double clearly = 30.0;
         const double typical = medianOf(differences);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             if (!(differences[i] > 1e-4))
@@ -333,7 +345,8 @@ std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Chann
                                      earlyPeriod(take, channel, level, pairs[i].realization, pairs[i].period),
                                      earlyPeriod(take, channel, level, pairs[i].realization, pairs[i].period + 1))
                                                                             : 0.0;
-            if (!(differences[i] > 30.0 * typical || moved != 0.0))
+            const double apart = clearly * std::max(typical, atSamePeriod(pairs, differences, i));
+            if (!(differences[i] > apart || moved != 0.0))
                 continue;
             auto& jump = jumps.emplace_back(pairs[i]);
             jump.moved = moved;

@@ -27,7 +27,8 @@ struct PeriodShift {
 /// The mean shift over all pairs of periods of one level; empty when a realization has a single period.
 std::optional<PeriodShift> periodShift(const AveragedPeriods&, const Channel&, int level);
 
-/// A pair of neighbouring periods that differ far more than such pairs do elsewhere in this channel.
+/// A pair of neighbouring periods that differ far more than such pairs do elsewhere in this channel, and than the same
+/// two periods do in the other realizations.
 struct PeriodJump {
     /// between `period` and the next, counted from the first used one
     int level = 0, realization = 0, period = 0;

@@ -12,7 +12,7 @@ namespace excursion {
 namespace {
 
 constexpr std::size_t longest = 128, judged = 16;
-constexpr double clearly = 3.0, growing = 2.0;  // of rms
+constexpr double clearly = 3.0, hardly = 1.5, growing = 2.0;  // of rms
 
 /// What has none is refused, with a reason, by who asks for periods.
 bool hasLongPeriods(const Measurement& take)
@@ -20,7 +20,7 @@ bool hasLongPeriods(const Measurement& take)
     if (!take.excitation)
         return false;
     const auto& e = *take.excitation;
-    return e.period >= static_cast<int>(32 * judged) && e.periods >= 1 && e.settlePeriods >= 0 && e.realizations >= 1
+    return e.period >= static_cast<int>(4 * longest) && e.periods >= 1 && e.settlePeriods >= 0 && e.realizations >= 1
            && std::all_of(take.channels.begin(), take.channels.end(), [&e](const Channel& channel) {
                   return static_cast<long>(channel.samples.size()) >= e.totalSamples();
               });
@@ -51,6 +51,20 @@ double meanOf(std::span<const double> x)
     return sum / static_cast<double>(x.size());
 }
 
+/// How many of the last samples ring; 0: none, or all of the longest end.
+/// @param difference  of the last period from those before it, over three times the longest end, without its mean drift
+std::size_t ringing(std::span<const double> difference)
+{
+    const double rest = rmsOf(difference.first(2 * longest)), end = rmsOf(difference.last(judged)),
+                 before = rmsOf(difference.last(2 * judged).first(judged));
+    if (!(end > clearly * rest) || !(end > growing * before))
+        return 0;
+    for (std::size_t length = 2 * judged; length <= longest; length *= 2)
+        if (rmsOf(difference.last(length).first(judged)) <= (length < longest ? hardly : clearly) * rest)
+            return length;
+    return 0;
+}
+
 }  // namespace
 
 int settleEnds(Measurement& take)
@@ -58,7 +72,7 @@ int settleEnds(Measurement& take)
     if (!hasLongPeriods(take))
         return 0;
     const auto& e = *take.excitation;
-    const auto N = static_cast<std::size_t>(e.period), length = std::min(longest, N / 16);
+    const auto N = static_cast<std::size_t>(e.period);
     int changed = 0;
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level)
         for (int realization = 0; realization < e.realizations; ++realization)
@@ -67,17 +81,14 @@ int settleEnds(Measurement& take)
                 if (before.empty())
                     return 0;
                 const auto last = onePeriod(take, channel, level, realization, e.periods - 1);
-                std::vector<double> difference(3 * length);
+                std::vector<double> difference(3 * longest);
                 for (std::size_t n = 0; n < difference.size(); ++n)
                     difference[n] = last[N - difference.size() + n] - before[N - difference.size() + n];
-                const double drift = meanOf(std::span(difference).first(2 * length));
+                const double drift = meanOf(std::span(difference).first(2 * longest));
                 for (double& value : difference)
                     value -= drift;
-                const std::span<const double> all(difference);
-                const double rest = clearly * rmsOf(all.first(2 * length)), end = rmsOf(all.last(judged));
-                const bool quietFirst = rmsOf(all.subspan(2 * length, judged)) <= rest,
-                           grows = end > growing * rmsOf(all.subspan(3 * length - 2 * judged, judged));
-                if (!(end > rest) || !quietFirst || !grows || end > rmsOf(last))
+                const auto length = ringing(difference);
+                if (length == 0 || rmsOf(std::span<const double>(difference).last(judged)) > rmsOf(last))
                     continue;
                 ++changed;
                 const auto place = static_cast<std::size_t>(last.data() - channel.samples.data()) + N - length;
