@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/MatchSound.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Signal/Fft.h"
 #include "SmallSetup.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <numbers>
 
@@ -85,5 +89,33 @@ TEST_CASE("The time of flight of a far microphone leaves the response of the sou
         CAPTURE(f);
         CHECK(std::abs(heard->value[k] - pressure) < 0.02 * std::abs(pressure));
         CHECK(heard->deviation[k] < 0.01 * std::abs(pressure));
+    }
+}
+
+TEST_CASE("The sound of evenly spaced lines arrives with the first of the delays that they allow", "[response]")
+{
+    auto setup = smallSetup();
+    setup.excitation.period = 1536;
+    setup.excitation.grid = "odd";  // a delay shows but for multiples of 16 ms, every other one with the other sign
+    setup.excitation.bandLow = 40.0;
+    const auto record = makeRecord(bench::measure(bench::Loudspeaker(), setup));
+    auto targets = responsesOf(record, -1);
+    auto& heard = targets.back();
+    REQUIRE(heard.quantity == Quantity::pressure);
+    CHECK(heard.delayPeriod == Approx(0.016));
+    auto model = startModel(record);
+    for (const double tau : {0.08e-3, 0.15e-3, 0.4e-3, 1.1e-3, 2.3e-3}) {
+        model.path.parameters[1].value = tau;
+        auto found = model;
+        for (auto& frequency : heard.frequency)  // on the lines, where delays look alike
+            frequency = 31.25 * std::round(frequency / 31.25);
+        heard.value = respond(model, {Quantity::pressure}, heard.frequency).front().value;
+        for (auto* match : {matchArrival, matchSound}) {
+            found.path.parameters[1].value = 20e-3;
+            found.path.parameters[0].value = -model.path.parameters[0].value;
+            match(found, thinned(heard, 6));
+            CAPTURE(tau);
+            CHECK(found.path.parameters[1].value == Approx(tau).margin(0.07 / heard.frequency.back()));
+        }
     }
 }

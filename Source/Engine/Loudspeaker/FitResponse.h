@@ -7,6 +7,7 @@
 #include "Engine/Take/Measurement.h"
 
 #include <complex>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct ResponseTarget {
     std::vector<double> frequency;          ///< Hz
     std::vector<std::complex<double>> value;
     std::vector<double> deviation;  ///< of value, weights the fit
+    /// s: lines that lie evenly, its inverse apart, show a delay but for multiples of this and a phase that all lines
+    /// share (of odd lines a sign)
+    double delayPeriod = std::numeric_limits<double>::infinity();
 };
 
 /// Responses of every channel of a record at one level (all levels when -1), on a logarithmic grid of frequencies: in

@@ -16,12 +16,14 @@ namespace excursion {
 namespace {
 
 /// The delays that are tried, s: from 0 on, to the usual ones or twice the present one, in steps of an eighth of the
-/// shortest period.
+/// shortest period. Those are left out that look like an earlier one: a model starts from rest, and its sound would
+/// arrive too late.
 struct Delays {
     double step, longest;
 
     Delays(double present, const ResponseTarget& pressure)
-        : step(0.125 / pressure.frequency.back()), longest(std::max(0.03, 2.0 * present))
+        : step(0.125 / pressure.frequency.back()),
+          longest(std::min(std::max(0.03, 2.0 * present), pressure.delayPeriod))
     {
     }
 };

@@ -10,7 +10,8 @@ namespace excursion {
 void matchArrival(Model&, const ResponseTarget& pressure);
 
 /// Gives a model whose motion is right the delay tau, the area Sd and the strengths s_k that only the sound shows, with
-/// which its pressure is nearest to the measured one: for each tau from 0 to 30 ms, or twice the present one,
+/// which its pressure is nearest to the measured one: for each tau from 0 to 30 ms, or twice the present one, but
+/// within the target's delayPeriod,
 ///     p(f) exp(j 2 pi f tau) = Sd (c(f) + sum s_k d_k(f))
 /// is linear in Sd and Sd s_k, c what the cone radiates by itself without delay. A search from another delay or sign
 /// ends in one of the valleys beside the right one. An area that is not free takes the sign only, and a strength

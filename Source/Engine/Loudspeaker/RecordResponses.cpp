@@ -101,6 +101,16 @@ double explained(const std::vector<Cell>& grid)
     return sum;
 }
 
+/// ResponseTarget::delayPeriod of the lines of a section.
+double delayPeriodOf(const Asked& asked, const Section& section)
+{
+    int apart = 0;
+    for (std::size_t k = 1; k < section.excited.size(); ++k)
+        apart = std::gcd(apart, section.excited[k] - section.excited[k - 1]);
+    return apart > 0 ? static_cast<double>(section.window) / (apart * asked.record.sampleRate)
+                     : std::numeric_limits<double>::infinity();
+}
+
 /// By how many seconds the sound of a section is late; 0 where nothing tells.
 double timeOfFlight(const Asked& asked, const Asked::One& one, std::size_t channel)
 {
@@ -113,20 +123,16 @@ double timeOfFlight(const Asked& asked, const Asked::One& one, std::size_t chann
     const auto isSilent = [](double value) { return value == 0.0; };
     if (std::all_of(output.begin(), output.end(), isSilent) || std::all_of(input.begin(), input.end(), isSilent))
         return 0.0;
-    const double rate = asked.record.sampleRate, window = static_cast<double>(section.window);
+    const double rate = asked.record.sampleRate;
     DelayOptions options;
     options.period = section.periodic ? static_cast<int>(section.window) : 0;
     options.lowest = asked.low / rate;
     options.highest = std::min(0.5, asked.high / rate);
-    double samples = estimateDelay(input, output, options).samples;
-    if (!std::isfinite(samples))
+    const double late = estimateDelay(input, output, options).samples / rate;
+    if (!std::isfinite(late))
         return 0.0;
-    int apart = 0;  // lines that are evenly so far apart tell a delay but for so many parts of the window
-    for (std::size_t k = 1; k < section.excited.size(); ++k)
-        apart = std::gcd(apart, section.excited[k] - section.excited[k - 1]);
-    if (apart > 0)
-        samples -= std::round(samples * apart / window) * window / apart;
-    return samples / rate;
+    const double repeats = delayPeriodOf(asked, section);
+    return std::isfinite(repeats) ? late - std::round(late / repeats) * repeats : late;
 }
 
 /// The section with the most power at the lines that are asked.
@@ -170,6 +176,8 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
         }
         ResponseTarget target;
         target.quantity = record.channels[c];
+        if (!asked.sections.empty())
+            target.delayPeriod = delayPeriodOf(asked, *asked.sections.front().section);
         for (const auto& cell : grid) {
             // A cell with next to no input power says nothing.
             if (cell.count == 0 || !(cell.input > 1e-7 * totalInput * cell.count / std::max(lines, 1)))

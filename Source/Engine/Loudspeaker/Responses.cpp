@@ -124,6 +124,7 @@ ResponseTarget thinned(const ResponseTarget& dense, int pointsPerOctave)
     ResponseTarget thin;
     thin.quantity = dense.quantity;
     thin.impedance = dense.impedance;
+    thin.delayPeriod = dense.delayPeriod;
     const std::size_t points = dense.frequency.size();
     for (std::size_t k = 0; k < points;) {
         const double band = std::floor(std::log2(dense.frequency[k]) * pointsPerOctave);
