@@ -3,17 +3,17 @@
 
 #include "Engine/Error.h"
 #include "Engine/Estimate/Coupling.h"
+#include "Engine/Estimate/DrivenBand.h"
+#include "Engine/Estimate/HoldOut.h"
+#include "Engine/Estimate/LineNoise.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
-#include "Engine/Take/Motion.h"
+#include "Engine/Signal/Resample.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <optional>
 #include <span>
 
 namespace excursion {
@@ -26,164 +26,6 @@ constexpr double trustedBand = 0.42;
 constexpr double distortionBand = 2.0;  // times the band: distortion products lie above it, too
 // products up to this order do not fold into the compared lines when samples are left out
 constexpr double foldingOrder = 6.0;
-
-double power(const Spectrum& spectrum)
-{
-    double sum = 0.0;
-    for (std::size_t k = 1; k < spectrum.size(); ++k)
-        sum += std::norm(spectrum[k]);
-    return sum;
-}
-
-/// Sums over lines of one kind, to be asked between any two.
-struct Tally {
-    std::vector<double> total, count;
-
-    Tally(const std::vector<double>& raw, const std::vector<char>& played, char kind)
-        : total(raw.size() + 1, 0.0), count(raw.size() + 1, 0.0)
-    {
-        for (std::size_t k = 0; k < raw.size(); ++k) {
-            total[k + 1] = total[k] + (played[k] == kind ? raw[k] : 0.0);
-            count[k + 1] = count[k] + (played[k] == kind ? 1.0 : 0.0);
-        }
-    }
-    /// The mean from k - reach to k + reach, without line 0 (an offset that drifts); nothing of fewer than `enough`
-    /// lines.
-    std::optional<double> around(std::size_t k, std::size_t reach, double enough) const
-    {
-        const std::size_t from = k > reach ? k - reach : 1, to = std::min(count.size() - 1, k + reach + 1);
-        const double lines = count[to] - count[from];
-        return lines < enough ? std::nullopt : std::optional((total[to] - total[from]) / lines);
-    }
-};
-
-std::vector<char> marked(const std::vector<int>& lines, std::size_t count)
-{
-    std::vector<char> played(count, 0);
-    for (const int k : lines)
-        if (static_cast<std::size_t>(k) < count)
-            played[static_cast<std::size_t>(k)] = 1;
-    return played;
-}
-
-std::size_t reachAt(std::size_t line) { return std::max<std::size_t>(12, line / 16); }
-
-/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. Played lines share it
-/// among themselves, the others, too: what drifts in the course of the take, as a coil that warms, scatters what was
-/// played and hardly anything else. A line that sticks out (hum) keeps its own level. Of nothing, nothing.
-std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
-{
-    constexpr double enough = 12.0;  // lines that share
-    const auto played = marked(excited, raw.size());
-    const Tally silentOnes(raw, played, 0), playedOnes(raw, played, 1);
-    auto result = raw;
-    for (std::size_t k = 1; k < raw.size(); ++k) {
-        auto reach = reachAt(k);
-        const auto& alike = played[k] ? playedOnes : silentOnes;
-        std::optional<double> mean;
-        for (; !mean; reach *= 2)  // on a sparse grid as far as it takes to find enough of them
-            mean = alike.around(k, reach, reach < raw.size() ? enough : 1.0);
-        result[k] = std::max(*mean, raw[k] / 6.0);
-    }
-    return result;
-}
-
-/// The same with the noise of the silent lines around it on each played one, where there are some, and it is less: a
-/// drift only adds to the scatter.
-std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
-                                 const std::vector<int>& excited)
-{
-    constexpr double enough = 6.0;
-    const auto played = marked(excited, raw.size());
-    const Tally silentOnes(raw, played, 0);
-    for (std::size_t k = 0; k < raw.size(); ++k)
-        if (played[k])
-            smooth[k] = std::min(smooth[k], silentOnes.around(k, reachAt(k), enough).value_or(smooth[k]));
-    return smooth;
-}
-
-/// @param variance  of each line; empty when unknown, then all lines weigh the same
-std::vector<double> deviations(const Spectrum& measured, std::vector<double> variance, double relativeFloor)
-{
-    const double perLine = power(measured) / static_cast<double>(measured.size());
-    constexpr double nominal = 1e-3;  // of unknown noise: only its evenness matters
-    std::vector<double> result(measured.size(), std::sqrt(perLine) * nominal);
-    if (!variance.empty())
-        for (std::size_t k = 0; k < result.size(); ++k)
-            result[k] = std::sqrt(variance[k] + perLine * relativeFloor * relativeFloor);
-    for (auto& deviation : result)
-        deviation = std::max(deviation, 1e-300);
-    return result;
-}
-
-/// The simulation is driven by the measured input, noise and all. Where nothing was played and nothing stands out of
-/// the scatter there is no signal, and the noise need not be played to the model; what the amplifier added is kept.
-void silenceNoise(std::vector<double>& period, const std::vector<double>& variance, const std::vector<int>& excited)
-{
-    constexpr double standsOut = 16.0;  // times the noise power
-    auto spectrum = fft(period);
-    const auto before = spectrum;
-    for (std::size_t k = 0; k < spectrum.size(); ++k)
-        if (std::norm(spectrum[k]) < standsOut * variance[k])
-            spectrum[k] = 0.0;
-    for (const int k : excited)
-        spectrum[static_cast<std::size_t>(k)] = before[static_cast<std::size_t>(k)];
-    period = inverseFft(spectrum, period.size());
-}
-
-/// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
-std::pair<double, double> integratedPeaks(const AveragedPeriods& averages, const Channel& channel, int level,
-                                          int realization, int integrations)
-{
-    const auto& e = averages.excitation();
-    auto spectrum = fft(averages.inTime(channel, level, realization));
-    const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
-    for (std::size_t k = 0; k < spectrum.size(); ++k)
-        spectrum[k] = k >= first && k <= last
-                          ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
-                          : 0.0;
-    const auto samples = inverseFft(spectrum, static_cast<std::size_t>(e.period));
-    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
-    return {*high, -*low};
-}
-
-/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to
-/// either side (what the channels tell of them; the input's low frequencies when they tell nothing of the cone), each
-/// relative to where the others go, its largest is the lowest.
-int quietestRealization(const AveragedPeriods& averages)
-{
-    const auto& take = averages.take();
-    const auto& e = averages.excitation();
-    const int loudest = e.loudest();
-    std::vector<std::pair<const Channel*, int>> motions;
-    for (const auto& channel : take.channels)
-        // The pressure of a piston follows the acceleration.
-        if (const auto n = integrationsToDisplacement(channel.quantity == Quantity::pressure ? Quantity::acceleration
-                                                                                             : channel.quantity)) {
-            motions.emplace_back(&channel, *n);      // displacement
-            motions.emplace_back(&channel, *n - 1);  // velocity
-        } else if (channel.quantity == Quantity::current) {
-            motions.emplace_back(&channel, 0);
-        }
-    motions.emplace_back(&take.input(), motions.empty() ? 1 : 0);
-    std::vector<double> farthest(static_cast<std::size_t>(e.realizations), 0.0);
-    for (const auto& [channel, integrations] : motions) {
-        std::vector<double> up, down;
-        for (int realization = 0; realization < e.realizations; ++realization) {
-            const auto [high, low] = integratedPeaks(averages, *channel, loudest, realization, integrations);
-            up.push_back(high);
-            down.push_back(low);
-        }
-        for (auto* peaks : {&up, &down})
-            for (std::size_t r = 0; r < peaks->size(); ++r) {
-                auto others = *peaks;
-                others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
-                if (const double reach = *std::max_element(others.begin(), others.end()); reach > 0.0)
-                    farthest[r] = std::max(farthest[r], (*peaks)[r] / reach);
-            }
-    }
-    return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
-}
 
 /// Scales the lines of a DFT from `window` to `length` samples, and cuts them or adds zeros.
 template <class Value>
@@ -216,14 +58,19 @@ void sampleAnew(Section& section, std::size_t length)
         variance *= share * share;
 }
 
+/// The sample rate from which on products of a model's laws do not fold onto lines that are compared.
+double rateFor(double bandHigh, double rate)
+{
+    return std::min(distortionBand * bandHigh, trustedBand * rate) + foldingOrder * bandHigh;
+}
+
 /// Samples of a period that a model is simulated with: fewer where lines above the distortion's band need not be there,
 /// twice as many where products of its laws would fold onto lines that are.
 std::size_t simulatedPeriod(const Measurement& take, double bandHigh)
 {
     auto period = static_cast<std::size_t>(take.excitation->period);
     double rate = take.sampleRate;
-    const double compared = std::min(distortionBand * bandHigh, trustedBand * rate),
-                 needed = compared + foldingOrder * bandHigh;
+    const double needed = rateFor(bandHigh, rate);
     if (needed > rate)
         return 2 * period;
     for (; period % 2 == 0 && needed <= 0.5 * rate; rate *= 0.5)
@@ -261,7 +108,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     const auto& e = averages.excitation();
     record.levels = e.levels;
     record.noiseKnown = e.periods > 1;
-    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(averages) : -1;
+    const int held = options.holdOut && e.realizations > 1 ? leastReaching(averages) : -1;
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
         const auto& scatter = averages.noise(take.input(), level).variance;
@@ -307,35 +154,57 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     record.leadIn = simulated * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
-void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
+/// A take without periods at a rate that its band needs, or as it is.
+Measurement thinned(Measurement take, double bandHigh)
+{
+    double fewer = 1.0;
+    while (rateFor(bandHigh, take.sampleRate) <= 0.5 * take.sampleRate / fewer)
+        fewer *= 2.0;
+    if (fewer > 1.0)
+        for (auto& channel : take.channels)
+            channel.samples = resampled(channel.samples, fewer);
+    take.sampleRate /= fewer;
+    return take;
+}
+
+/// @param recordedRate  Hz, before the take was thinned
+void addWindows(const Measurement& take, double recordedRate, const RecordOptions& options, Record& record)
 {
     const std::size_t length = take.length();
-    const auto lead = static_cast<std::size_t>(std::max(options.leadInSeconds * take.sampleRate, 1024.0));
-    auto window = static_cast<std::size_t>(std::max(options.windowSeconds * take.sampleRate, 2048.0));
+    const auto samplesOf = [&](double seconds, double fewest) {
+        return static_cast<std::size_t>(take.sampleRate * std::max(seconds, fewest / recordedRate));
+    };
+    const auto lead = samplesOf(options.leadInSeconds, 1024.0);
+    auto window = samplesOf(options.windowSeconds, 2048.0);
     if (length < lead + 256)
         throw Error(Error::Kind::data, "The take is only " + std::to_string(length)
                                            + " samples long; a fit needs at least a second of signal.");
     window = std::min(window, length - lead);
     const std::size_t count = std::max<std::size_t>(1, (length - lead) / window);
-    const std::size_t fitted = options.holdOut && count > 1 ? std::max<std::size_t>(1, count * 2 / 3) : count;
+    std::vector<double> whole(record.channels.size(), 0.0);  // power of a channel, on all lines of all windows
     for (std::size_t n = 0; n < count; ++n) {
         const std::size_t begin = lead + n * window;
         Section section;
         section.window = window;
-        section.validation = n >= fitted;
         section.begin = n > 0 ? static_cast<double>(begin) / take.sampleRate : 0.0;
         section.end = static_cast<double>(begin + window) / take.sampleRate;
         section.middle = section.end - 0.5 * static_cast<double>(window) / take.sampleRate;
         const auto& input = take.input().samples;
         section.input.assign(input.begin() + static_cast<std::ptrdiff_t>(begin - lead),
                              input.begin() + static_cast<std::ptrdiff_t>(begin + window));
-        for (const auto quantity : record.channels) {
-            const auto& samples = take.find(quantity)->samples;
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            const auto& samples = take.find(record.channels[c])->samples;
             section.measured.push_back(fft(std::span(samples).subspan(begin, window)));
-            section.deviation.push_back(deviations(section.measured.back(), {}, options.relativeFloor));
+            whole[c] += powerOf(section.measured.back());
         }
         record.sections.push_back(std::move(section));
     }
+    // The noise of a sensor is the same in loud and in quiet windows: each by its own power would make those count most
+    // that hold nothing else.
+    for (auto& section : record.sections)
+        for (const double sum : whole)
+            section.deviation.push_back(
+                evenDeviation(section.measured.front().size(), sum / static_cast<double>(count)));
     record.leadIn = lead;
 }
 
@@ -389,7 +258,16 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
         addPeriodicSections(averages, options, simulated, record);
     } else {
         record.wanderDb.resize(record.channels.size());
-        addAperiodicSections(take, options, record);
+        const auto band = drivenBand(take.input().samples, take.sampleRate);
+        if (band.high > 0.0) {
+            record.bandLow = band.low;
+            record.bandHigh = std::min(record.bandHigh, band.high);
+        }
+        const auto fewer = thinned(take, record.bandHigh);
+        record.sampleRate = fewer.sampleRate;
+        addWindows(fewer, take.sampleRate, options, record);
+        if (options.holdOut)
+            holdOutWindows(record);
     }
     uncouple(record, take.coupling);
     if (const auto pressure = record.channelIndex(Quantity::pressure))
