@@ -333,3 +333,44 @@ TEST_CASE("no sound take is accused, from micro speaker to subwoofer", "[slow]")
         CHECK(blind.fitForUse());
     }
 }
+
+TEST_CASE("what a sensor hisses above all that is compared makes no take unfit")
+{
+    std::mt19937_64 random(4);
+    synthetic::Plan plan;
+    plan.noiseDb = -70.0;
+    auto take = synthetic::record(synthetic::Loudspeaker(), plan, random);
+    auto& samples = samplesOf(take, Quantity::current);
+    const double rms = synthetic::rms(samples);
+    const double band = take.excitation->lines.back() * take.sampleRate / take.excitation->period;
+    REQUIRE(band < 0.2 * take.sampleRate);
+    std::normal_distribution<double> normal;
+    double last = 0.0, before = 0.0;
+    for (double& sample : samples) {  // second differences of white noise: 40 dB a decade
+        const double now = normal(random);
+        sample += 0.4 * rms * (now - 2.0 * last + before);
+        before = last;
+        last = now;
+    }
+    const auto report = check(take);
+    INFO(fatalSentences(report));
+    CHECK(std::none_of(report.problems.begin(), report.problems.end(),
+                       [](const Problem& p) { return p.kind == "poor-repeatability" && p.fatal; }));
+}
+
+TEST_CASE("a voltage that was not recorded neither clips nor loses samples")
+{
+    auto take = soundTake();
+    take.excitation.reset();
+    auto& channel = *std::find_if(take.channels.begin(), take.channels.end(),
+                                  [](const Channel& c) { return c.quantity == Quantity::voltage; });
+    const double limit = 0.5 * *std::max_element(channel.samples.begin(), channel.samples.end());
+    for (double& sample : channel.samples)  // limited, as mastered music is
+        sample = std::clamp(sample, -limit, limit);
+    std::fill_n(channel.samples.begin() + 20000, 3000, 0.0);  // a break
+    CHECK(find(check(take), "clipping", Quantity::voltage));
+    CHECK(find(check(take), "dropout", Quantity::voltage));
+    channel.assumed = true;
+    CHECK_FALSE(find(check(take), "clipping", Quantity::voltage));
+    CHECK_FALSE(find(check(take), "dropout", Quantity::voltage));
+}

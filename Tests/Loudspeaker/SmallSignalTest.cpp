@@ -257,6 +257,30 @@ TEST_CASE("The eddy currents follow a chain of few resistors and inductors that 
         CHECK(figure.standardError < 0.1 * figure.value);
 }
 
+TEST_CASE("An effect is sought in the whole band, whichever response comes first", "[effects]")
+{
+    // A motion counts up to where the cone moves as one piece, an impedance further.
+    std::vector<double> low, high;
+    for (double f = 20.0; f < 12000.0; f *= 1.05)
+        (f < 800.0 ? low : high).push_back(f);
+    high.insert(high.begin(), low.begin(), low.end());
+    auto truth = withEffect(midbass(), effectNamed("eddy-currents"), someOperatingRange(1.0));
+    ResponseTarget velocity {Quantity::velocity, false, low, {}, {}}, impedance {Quantity::current, true, high, {}, {}};
+    velocity.value = respond(truth, {Quantity::velocity}, low).front().value;
+    const auto current = respond(truth, {Quantity::current}, high);
+    for (const auto& admittance : current.front().value)
+        impedance.value.push_back(1.0 / admittance);
+    for (auto* target : {&velocity, &impedance})
+        for (const auto& value : target->value)
+            target->deviation.push_back(1e-3 * std::abs(value));
+    for (const auto& targets : {std::vector {velocity, impedance}, std::vector {impedance, velocity}}) {
+        auto model = midbass();
+        REQUIRE(addByResponse(model, effectNamed("eddy-currents"), targets).usable());
+        CHECK(model.components.back().operatingRange.lowFrequency == low.front());
+        CHECK(model.components.back().operatingRange.highFrequency == high.back());
+    }
+}
+
 TEST_CASE("What an effect sums up to is its law where nothing departs from it", "[effects]")
 {
     auto model = withEffect(midbass(), effectNamed("eddy-currents"), someOperatingRange(1.0));

@@ -141,8 +141,10 @@ bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, Chann
                             "The " + who + " channel has only " + plainText(snr, 0)
                                 + " dB of signal to noise at the loudest level; play louder or average more periods."});
 
+    // Above the band and its products a sensor may hiss as it likes: nothing is compared there.
+    const auto end = std::min(powers.mean.size(), 2 * static_cast<std::size_t>(lines.back()) + 1);
     double all = 0.0, scatter = 0.0;
-    for (std::size_t k = 1; k < powers.mean.size(); ++k) {
+    for (std::size_t k = 1; k < end; ++k) {
         all += powers.mean[k];
         scatter += powers.noise[k];
     }

@@ -68,12 +68,13 @@ bool checkWaveform(const AveragedPeriods& averages, const Channel& channel, Chan
                             "The " + who + " channel never moves: connect its sensor, or remove the channel."});
         return false;
     }
-    checkClipping(averages, channel, figures, problems);
+    if (!channel.assumed)  // what was meant to be played was not recorded: nothing clips it, or loses samples
+        checkClipping(averages, channel, figures, problems);
     if (const double offset = std::abs(figures.offset) / figures.rms; offset > legalOffset(channel.quantity))
         problems.push_back({"dc-offset", channel.quantity, figures.offset, channel.unit, false,
                             "The " + who + " channel has an offset of " + std::to_string(std::lround(100.0 * offset))
                                 + " % of its rms; the fit will not follow it."});
-    if (const long still = longestStandstill(channel); still > longestLegalStandstill)
+    if (const long still = channel.assumed ? 0 : longestStandstill(channel); still > longestLegalStandstill)
         problems.push_back({"dropout", channel.quantity, static_cast<double>(still), "samples", true,
                             "The " + who + " channel stands still for " + std::to_string(still)
                                 + " samples amid motion: the recorder lost data; record again with larger buffers."});

@@ -177,8 +177,7 @@ bool Improvement::addTogether(const Progress& progress)
     if (rungs.empty())
         return false;
     rungs.back() = judged(std::move(rungs.back()), data, progress.part(0.8, 1.0));
-    use(std::move(data), progress.silent());
-    ladder_.rungs.pop_back();  // comes again, with its diagnosis
+    use(std::move(data), ladder_.rungs.size() - 1, progress.silent());  // the last one comes again, with its diagnosis
     for (auto& rung : rungs)
         keep(std::move(rung));
     return true;
@@ -270,14 +269,15 @@ void Improvement::add(const std::string& id, const Progress& progress)
     rung.fit = std::visit(
         [&](auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data);
     rung = judged(std::move(rung), data, progress.part(0.5, 1.0));
-    use(std::move(data), progress.silent());
+    use(std::move(data), ladder_.rungs.size(), progress.silent());
     keep(std::move(rung));
 }
 
 /// Compares and diagnoses all rungs anew where the noise is another; one that runs away there stays as it was.
-void Improvement::use(Data data, const Progress& silent)
+void Improvement::use(Data data, std::size_t kept, const Progress& silent)
 {
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
+    rungs.resize(kept);
     if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
         now && before && hasSilentNoise(*now) != hasSilentNoise(*before))
         for (auto& rung : rungs)

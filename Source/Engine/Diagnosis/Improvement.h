@@ -73,7 +73,8 @@ private:
     Together together(const Spectra&, const Progress&) const;
     Together together(Record&, const Progress&) const;
     Rung judged(Rung, const Data&, const Progress&) const;
-    void use(Data, const Progress& silent);
+    /// Goes on with other data; the first `kept` rungs stay, judged by them.
+    void use(Data, std::size_t kept, const Progress& silent);
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence from the last rung's diagnosis
 

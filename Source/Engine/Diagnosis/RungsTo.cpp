@@ -98,8 +98,10 @@ Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& who
 double confidenceOf(const Vote& vote)
 {
     constexpr double least = 0.90, most = 0.985;
+    constexpr double untold = 0.3;  // of one level
+    const double inconsistency = std::isnan(vote.inconsistency) ? untold : vote.inconsistency;
     const double merit = std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0))
-                         * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0);
+                         * std::clamp(1.0 - inconsistency, 0.0, 1.0);
     return least + (most - least) * merit;
 }
 

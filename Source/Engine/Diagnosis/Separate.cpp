@@ -22,9 +22,9 @@ constexpr double never = -300.0;
 const Section& loudest(const Record& record)
 {
     const auto fitted = estimationSections(record);
-    return record.sections[*std::max_element(fitted.begin(), fitted.end(), [&](std::size_t m, std::size_t n) {
-        return record.sections[m].level < record.sections[n].level;
-    })];
+    const auto loudness = [&](std::size_t n) { return rmsOf(std::span<const double>(record.sections[n].input)); };
+    return record.sections[*std::max_element(fitted.begin(), fitted.end(),
+                                             [&](std::size_t m, std::size_t n) { return loudness(m) < loudness(n); })];
 }
 
 double differenceDb(std::span<const double> a, std::span<const double> b)

@@ -9,9 +9,17 @@ namespace excursion {
 
 std::vector<std::size_t> trialSections(const Record& record, int realizations)
 {
+    constexpr std::size_t windows = 6;  // without levels, for each realization that is asked
+    const auto fitted = estimationSections(record);
     std::map<int, int> taken;
     std::vector<std::size_t> sections;
-    for (const auto n : estimationSections(record)) {
+    if (const auto most = windows * static_cast<std::size_t>(realizations);
+        record.levels.empty() && fitted.size() > most) {
+        for (std::size_t k = 0; k < most; ++k)
+            sections.push_back(fitted[(2 * k + 1) * fitted.size() / (2 * most)]);
+        return sections;
+    }
+    for (const auto n : fitted) {
         const int level = record.sections[n].level;
         if (level >= 0 && taken[level]++ >= realizations)
             continue;

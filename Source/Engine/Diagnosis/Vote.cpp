@@ -50,7 +50,9 @@ Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::ve
     }
     const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
     const double byLevel = gainByLevel(sums, all, strengths);
-    return {uniqueDb, byLevel / std::max(explained, 1e-300), byLevel};
+    const double inconsistency = sums.byLevel.size() > 1 ? byLevel / std::max(explained, 1e-300)
+                                                         : std::numeric_limits<double>::quiet_NaN();
+    return {uniqueDb, inconsistency, byLevel};
 }
 
 std::map<std::string, Vote> votesOf(const Model& model, const Record& record, const ScoreOptions& options,

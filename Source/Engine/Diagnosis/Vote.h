@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Sums.h"
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,14 +16,17 @@ struct Vote {
     /// explains
     double uniqueDb = 0.0;
     /// how much more it would explain with separate strengths at each level, relative to that. A law is the same at all
-    /// levels; an effect that stands for something else is not
+    /// levels; an effect that stands for something else is not. NaN of one level, which cannot tell
     double inconsistency = 0.0;
     double byLevel = 0.0;  ///< the same, relative to the cost
 
     /// Whether the others explain clearly less without it, and its strength is about the same at all levels.
-    bool backs() const { return uniqueDb >= 0.5 && inconsistency < 0.5; }
-    /// Whether it explains what nothing else does, no matter what else is missing.
-    bool standsAlone() const { return uniqueDb >= 3.0 && inconsistency < 0.2; }
+    bool backs() const { return uniqueDb >= 0.5 && !(inconsistency >= 0.5); }
+    /// Whether it explains what nothing else does, no matter what else is missing. Of one level it must explain more.
+    bool standsAlone() const
+    {
+        return std::isnan(inconsistency) ? uniqueDb >= 6.0 : uniqueDb >= 3.0 && inconsistency < 0.2;
+    }
 };
 
 /// @param together   places of the parameters that may change

@@ -138,9 +138,9 @@ Vote WholeSearch::votedBy(const std::string& effect, const Vote& vote, const Lef
 {
     const double explained = std::max(without.cost - with.cost, 1e-300);
     return {lost(without, with),
-            effectNamed(effect).linear() ? 0.0
-            : atNoise                    ? vote.byLevel / explained
-                                         : vote.inconsistency,
+            effectNamed(effect).linear()                 ? 0.0
+            : atNoise && !std::isnan(vote.inconsistency) ? vote.byLevel / explained
+                                                         : vote.inconsistency,
             vote.byLevel};
 }
 

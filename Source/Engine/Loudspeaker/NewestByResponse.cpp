@@ -66,6 +66,10 @@ SearchSummary addByResponse(Model& model, const Effect& effect, const std::vecto
     OperatingRange operatingRange;
     operatingRange.lowFrequency = targets.front().frequency.front();
     operatingRange.highFrequency = targets.front().frequency.back();
+    for (const auto& target : targets) {  // a motion may count in a part of the band only
+        operatingRange.lowFrequency = std::min(operatingRange.lowFrequency, target.frequency.front());
+        operatingRange.highFrequency = std::max(operatingRange.highFrequency, target.frequency.back());
+    }
     Model best = withEffect(model, effect, operatingRange);
     auto summary = fitNewestByResponse(best, targets);
     if (summary.usable())
