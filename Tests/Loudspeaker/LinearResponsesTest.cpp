@@ -119,3 +119,43 @@ TEST_CASE("The sound of evenly spaced lines arrives with the first of the delays
         }
     }
 }
+
+TEST_CASE("A resonance is found where the band is, at any frequency", "[response]")
+{
+    for (const double scale : {1e-3, 1.0, 200.0}) {  // of frequency
+        auto truth = makeModel("mechanical");
+        truth.baseParameter("m").value = 0.01;
+        const double omega = 2.0 * std::numbers::pi * 40.0 * scale;
+        truth.baseParameter("K").value = 0.01 * omega * omega;
+        truth.baseParameter("Rms").value = 0.01 * omega / 3.0;
+        ResponseTarget target;
+        target.quantity = Quantity::velocity;
+        for (double f = 15.0 * scale; f < 400.0 * scale; f *= 1.03)
+            target.frequency.push_back(f);
+        target.value = respond(truth, {Quantity::velocity}, target.frequency).front().value;
+        for (const auto& value : target.value)
+            target.deviation.push_back(1e-3 * std::abs(value));
+        const auto model = startModel({target}, false, {});
+        CAPTURE(scale);
+        CHECK(model.baseParameter("K").value == Approx(truth.baseParameter("K").value).epsilon(1e-3));
+        CHECK(model.baseParameter("m").value == Approx(0.01).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("A motion goes as far as it does, however much its sensor hisses", "[record]")
+{
+    const auto rangeAt = [](double noiseDb) {
+        auto setup = smallSetup();
+        setup.sampleRate = 96000.0;
+        setup.excitation.period = 8192;
+        setup.excitation.bandHigh = 20000.0;
+        setup.excitation.shape = "red";
+        setup.channels = {Quantity::voltage, Quantity::displacement};
+        setup.noiseDb = noiseDb;
+        const auto record = makeRecord(bench::measure(bench::Loudspeaker(), setup));
+        return visitedRange(startModel(record), record);
+    };
+    const auto quiet = rangeAt(-110.0), noisy = rangeAt(-45.0);
+    CHECK(noisy.velocity == Approx(quiet.velocity).epsilon(0.1));
+    CHECK(noisy.displacement == Approx(quiet.displacement).epsilon(0.05));
+}

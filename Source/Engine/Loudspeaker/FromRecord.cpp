@@ -18,15 +18,18 @@
 namespace excursion {
 namespace {
 
-/// Peak of a channel's window, integrated `integrations` times (negative: differentiated), without its mean.
+/// Peak of a channel's window, integrated `integrations` times (negative: differentiated), without its mean. Lines that
+/// do not stand out of the noise are left out: a motion that is differentiated over a wide band would show it alone.
 double measuredPeak(const Record& record, const Section& section, std::size_t channel, int integrations)
 {
+    constexpr double standsOut = 3.0;
     auto spectrum = section.measured[channel];
     spectrum.front() = 0.0;
     for (std::size_t k = 1; k < spectrum.size(); ++k) {
         const double f = record.frequency(section, k);
         // Below the band an integrated channel holds little but amplified noise, above it a differentiated one.
-        const bool trusted = (integrations <= 0 || f > 0.5 * record.bandLow)
+        const bool heard = !record.noiseKnown || std::abs(spectrum[k]) > standsOut * section.deviation[channel][k];
+        const bool trusted = heard && (integrations <= 0 || f > 0.5 * record.bandLow)
                              && (integrations >= 0 || f < 1.5 * record.bandHigh);
         spectrum[k] = trusted
                           ? spectrum[k] / std::pow(std::complex<double>(0.0, 2.0 * std::numbers::pi * f), integrations)
