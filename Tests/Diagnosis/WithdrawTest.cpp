@@ -66,3 +66,24 @@ TEST_CASE("Silent lines that hold little beside others do not vouch for an effec
     withdrawDoubtful(ladder);
     CHECK(ladder.withdrawn.size() == 1);
 }
+
+TEST_CASE("What stood alone is taken back where no fit has been and nothing is seen of it", "[diagnosis]")
+{
+    const auto standing = [](double fall, bool validated) {
+        auto ladder = ladderOfTwo();
+        for (auto& ranked : ladder.rungs[0].diagnosis.ranking)
+            ranked.vote = {6.0, 0.05, 0.0};
+        for (auto& rung : ladder.rungs) {
+            rung.comparison.validated = validated;
+            for (auto& channel : rung.comparison.channels)
+                channel.total.chiSquaredPerValue = 5.0;
+        }
+        ladder.rungs[1].comparison.channels[1].total.chiSquaredPerValue -= fall;
+        withdrawDoubtful(ladder);
+        return ladder.withdrawn.empty();
+    };
+    CHECK_FALSE(standing(-0.1, true));
+    CHECK_FALSE(standing(0.05, true));
+    CHECK(standing(0.2, true));
+    CHECK(standing(0.0, false));  // of a take without held-out sections the vote stands
+}

@@ -51,6 +51,23 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
     return best;
 }
 
+/// Whether the held-out sections show nothing of an effect, however much it explains where it was fitted: what wanders
+/// by chance can be followed by several effects together, which then seem to be missed beside each other. Of no channel
+/// that holds a hundredth of the largest excess does such an effect take a fiftieth.
+bool isUnseen(const Comparison& before, const Comparison& after)
+{
+    constexpr double small = 0.01, hardly = 0.02;
+    const auto excess = [](const ChannelComparison& channel) { return channel.total.chiSquaredPerValue - 1.0; };
+    double largest = 0.0;
+    for (const auto& channel : before.channels)
+        largest = std::max(largest, excess(channel));
+    for (std::size_t c = 0; c < before.channels.size(); ++c)
+        if (const double then = excess(before.channels[c]);
+            then > small * largest && then - excess(after.channels[c]) > hardly * then)
+            return false;
+    return before.validated;
+}
+
 /// Whether the diagnosis that proposed a rung's effect said that it explains what nothing else does.
 bool stoodAlone(const Rung& before, const Rung& rung)
 {
@@ -67,7 +84,8 @@ void withdrawDoubtful(Ladder& ladder)
     constexpr double convincing = 3.0;
     const Comparison last = ladder.rungs.back().comparison;
     const auto isDoubtful = [&](const Rung& before, const Rung& rung) {
-        return !stoodAlone(before, rung) && worth(before.comparison, rung.comparison, last) < convincing
+        return (!stoodAlone(before, rung) || isUnseen(before.comparison, rung.comparison))
+               && worth(before.comparison, rung.comparison, last) < convincing
                && worthOnSilentLines(before.comparison, rung.comparison, last) < convincing;
     };
     while (ladder.rungs.size() > 1 && isDoubtful(ladder.rungs[ladder.rungs.size() - 2], ladder.rungs.back())) {
