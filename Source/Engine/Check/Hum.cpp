@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
 
 namespace excursion {
@@ -85,6 +86,32 @@ double shareLeft(double frequency, double reach, const Excitation& e, double sam
     return std::max(least, power);  // each of the two phases has half of the power
 }
 
+/// Where a played line lies on a harmonic, what a loudspeaker drifts tears it in the same way as hum does: the median
+/// of what the nearest other lines are torn by. 0 without such a line.
+/// @param tornAt  the largest power of the residual spectrum around a place, in lines of that
+double tornBeside(double centre, double reach, const Excitation& e, const std::function<double(double)>& tornAt)
+{
+    constexpr std::size_t neighbours = 6;
+    std::vector<double> places;
+    bool played = false;
+    for (const int line : e.lines) {
+        const double place = static_cast<double>(line) * e.periods;
+        if (std::abs(place - centre) <= reach)
+            played = true;
+        else
+            places.push_back(place);
+    }
+    if (!played || places.empty())
+        return 0.0;
+    std::sort(places.begin(), places.end(),
+              [centre](double a, double b) { return std::abs(a - centre) < std::abs(b - centre); });
+    places.resize(std::min(places.size(), neighbours));
+    std::vector<double> torn;
+    for (const double place : places)
+        torn.push_back(tornAt(place));
+    return medianOf(torn);
+}
+
 }  // namespace
 
 std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& channel)
@@ -112,23 +139,27 @@ std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& chann
             if (surroundings < reach + 3.0 || centre - surroundings < 1.0
                 || centre + surroundings > static_cast<double>(power.size() - 1))
                 continue;
-            double peak = 0.0, sum = 0.0;
+            double sum = 0.0;
             std::vector<double> beside;
             for (auto k = static_cast<std::size_t>(centre - surroundings);
                  static_cast<double>(k) <= centre + surroundings; ++k) {
                 const bool near = std::abs(static_cast<double>(k) - centre) <= reach;
                 if (near)
                     sum += power[k];
-                // Multiples of the number of periods were taken away with the average.
-                if (k % static_cast<std::size_t>(e.periods) == 0)
-                    continue;
-                if (near) {
-                    peak = std::max(peak, power[k]);
-                } else {
+                else if (k % static_cast<std::size_t>(e.periods) != 0)
                     beside.push_back(power[k]);
-                }
             }
-            const double floor = medianOf(beside);
+            // Multiples of the number of periods were taken away with the average.
+            const auto tornAt = [&](double place) {
+                double largest = 0.0;
+                for (auto k = static_cast<std::size_t>(std::max(1.0, place - reach));
+                     static_cast<double>(k) <= place + reach && k < power.size(); ++k)
+                    if (k % static_cast<std::size_t>(e.periods) != 0)
+                        largest = std::max(largest, power[k]);
+                return largest;
+            };
+            const double peak = tornAt(centre),
+                         floor = std::max(medianOf(beside), tornBeside(centre, reach, averages.excitation(), tornAt));
             const double standsOut = 10.0 * std::log10(peak / std::max(1e-30 * signal, floor));
             if (standsOut < 15.0)
                 continue;

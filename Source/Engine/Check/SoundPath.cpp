@@ -239,12 +239,18 @@ std::optional<SoundPath> findSoundPath(const AveragedPeriods& averages, const st
             fastest = k;
     const double edge = std::min(4.0 * seen.frequency[fastest], lowEnd);
     constexpr double clear = 0.01;  // of the power
+    // Long periods have ten thousand lines there; so many tell no less, evenly over the octaves.
+    constexpr double most = 400.0;
+    const double apart = std::pow(edge / seen.frequency.front(), 1.0 / most);
+    double last = 0.0;
     MotionPerSound sound;
     for (std::size_t k = 0; k < seen.value.size() && seen.frequency[k] < edge; ++k) {
+        if (seen.frequency[k] < apart * last)
+            continue;
         const auto relativeVariance = [&](const Frf& frf) { return frf.noiseVariance[k] / std::norm(frf.value[k]); };
         const double variance = relativeVariance(heard) + relativeVariance(seen);
         if (variance < clear)
-            sound.add(seen.frequency[k], accelerationAt(k) / heard.value[k], variance);
+            sound.add(last = seen.frequency[k], accelerationAt(k) / heard.value[k], variance);
     }
     constexpr std::size_t fewest = 12;
     if (sound.lines() < fewest)
