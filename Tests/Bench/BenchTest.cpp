@@ -60,6 +60,30 @@ TEST_CASE("a take is laid out as the format says", "[bench]")
     CHECK(plan.lines.back() * setup.sampleRate / plan.period <= plan.bandHigh);
 }
 
+TEST_CASE("sections that jump ring before they end, and nowhere else", "[bench]")
+{
+    auto setup = smallSetup();
+    setup.jumps = true;
+    const auto take = measure(Loudspeaker {}, setup);
+    const auto& plan = *take.excitation;
+    const auto& u = take.find(Quantity::voltage)->samples;
+    const auto period = static_cast<std::size_t>(plan.period),
+               part = static_cast<std::size_t>(plan.samplesPerRealization());
+    for (std::size_t section = 0; section + 1 < 4; ++section) {
+        const auto end = (section + 1) * part;
+        const auto change = [&](std::size_t from, std::size_t length) {  // from one period to the next, before the end
+            std::vector<double> difference(length);
+            for (std::size_t n = 0; n < length; ++n)
+                difference[n] = u[end - from + n] - u[end - from - period + n];
+            return rms(difference) / rms(std::span(u).subspan(end - period, period));
+        };
+        CHECK(change(16, 16) > 1e-3);
+        CHECK(change(2048, 1024) < 1e-3 * change(16, 16));
+        // The first sample of the next section is already its own.
+        CHECK(u[end + 16] == Approx(u[end + 16 + period]).margin(0.05 * plan.levels.back()));
+    }
+}
+
 TEST_CASE("the same seed gives the same take, another one does not", "[bench]")
 {
     auto setup = smallSetup();
