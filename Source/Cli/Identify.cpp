@@ -37,10 +37,10 @@ struct IdentifyArguments {
 };
 
 /// Without --order all from 1 to 8 are tried: a loudspeaker in a box with eddy currents has about 6.
-std::vector<int> ordersFrom(std::vector<int> orders)
+std::vector<int> ordersFrom(std::vector<int> orders, const FrequencyData& data)
 {
     if (orders.empty())
-        return {1, 2, 3, 4, 5, 6, 7, 8};
+        return ordersWithin({1, 2, 3, 4, 5, 6, 7, 8}, data);
     std::sort(orders.begin(), orders.end());
     orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
     return orders;
@@ -67,7 +67,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     FractionalOptions fractional;
     fractional.alpha = alphaFrom(options.alpha);
     fractional.thorough = !options.quick;
-    const auto sweep = sweepFractional(data, ordersFrom(options.orders), fractional, terminal.progress());
+    const auto sweep = sweepFractional(data, ordersFrom(options.orders, data), fractional, terminal.progress());
     const auto& chosen = sweep.entries[sweep.chosen];
     const auto& found = chosen.found;
     const IdentifiedFractionalModel identified {
@@ -188,7 +188,7 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     }
 
     OrderSweepOptions sweeping;
-    sweeping.orders = ordersFrom(options.orders);
+    sweeping.orders = ordersFrom(options.orders, data);
     sweeping.identify.sampleRate = options.discrete ? open.sampleRate : 0.0;
     sweeping.identify.refine = !options.unrefined;
     sweeping.identify.thorough = !options.quick;

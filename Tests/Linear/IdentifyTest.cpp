@@ -6,6 +6,9 @@
 #include "Engine/Linear/Subspace.h"
 #include "Linear/Problem.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 using namespace excursion;
@@ -163,6 +166,122 @@ TEST_CASE("The order of a noisy response is found, in continuous time too")
             CHECK(*chosen.entries[k].validationDb >= *chosen.entries[of].validationDb);
         CHECK(chosen.chosen == of);
     }
+}
+
+namespace {
+
+/// Resonances at 60 Hz and, of order 4, at 260 Hz, in discrete time at 2 kHz.
+StateSpace resonances(int order)
+{
+    StateSpace model;
+    model.sampleRate = 2000.0;
+    model.A = Eigen::MatrixXd::Zero(order, order);
+    model.B = Eigen::MatrixXd::Zero(order, 1);
+    model.C = Eigen::MatrixXd::Zero(1, order);
+    model.D = Eigen::MatrixXd::Constant(1, 1, 0.1);
+    for (Eigen::Index i = 0; i < order / 2; ++i) {
+        const double r = 0.95 + 0.01 * static_cast<double>(i);
+        const double w = 2.0 * std::numbers::pi * (i == 0 ? 60.0 : 260.0) / model.sampleRate;
+        model.A.block(2 * i, 2 * i, 2, 2) << r * std::cos(w), r * std::sin(w), -r * std::sin(w), r * std::cos(w);
+        model.B(2 * i, 0) = 1.0;
+        model.C(0, 2 * i + 1) = i == 0 ? 0.2 : 0.1;
+    }
+    return model;
+}
+
+/// What so many realizations tell of it: their mean, and its variance as they scatter. The noise of each falls with the
+/// frequency, by 20 dB in all.
+Frf scattered(const StateSpace& truth, int realizations, std::uint64_t seed)
+{
+    Frf frf;
+    Normal normal(seed);
+    constexpr int lines = 120;
+    for (int k = 1; k <= lines; ++k)
+        frf.frequency.push_back(8.0 * k);
+    const auto exact = respond(truth, frf.frequency);
+    const double M = realizations;
+    for (std::size_t k = 0; k < frf.frequency.size(); ++k) {
+        const double deviation = 0.03 * std::pow(10.0, -static_cast<double>(k) / lines);
+        std::vector<std::complex<double>> of;
+        std::complex<double> mean = 0.0;
+        for (int m = 0; m < realizations; ++m) {
+            const double re = normal(), im = normal();
+            of.push_back(exact[k](0, 0) + deviation * std::sqrt(0.5) * std::complex<double>(re, im));
+            mean += of.back() / M;
+        }
+        double variance = 0.0;
+        for (const auto& g : of)
+            variance += std::norm(g - mean) / (M * (M - 1.0));
+        frf.value.push_back(mean);
+        frf.totalVariance.push_back(variance);
+    }
+    return frf;
+}
+
+}  // namespace
+
+TEST_CASE("The order is found from a few realizations, whose scatter tells the noise of a line only roughly")
+{
+    OrderSweepOptions options;
+    options.orders = {1, 2, 3, 4, 5, 6, 8};
+    options.identify.sampleRate = 2000.0;
+    for (const int order : {2, 4})
+        for (const int realizations : {2, 3, 4, 30}) {
+            int right = 0;
+            double chiSquared = 0.0;
+            constexpr int seeds = 10;
+            for (int seed = 1; seed <= seeds; ++seed) {
+                const auto data = frequencyDataOf(
+                    scattered(resonances(order), realizations, static_cast<std::uint64_t>(100 * realizations + seed)));
+                const auto sweep = sweepOrders(data, options);
+                right += sweep.entries[sweep.chosen].order == order ? 1 : 0;
+                const auto found = std::find_if(sweep.entries.begin(), sweep.entries.end(),
+                                                [&](const auto& entry) { return entry.order == order; });
+                chiSquared += found->found.chiSquared / static_cast<double>(data.lines()) / seeds;
+            }
+            CAPTURE(order, realizations, right, chiSquared);
+            CHECK(right >= seeds - 1);
+            CHECK(chiSquared == Approx(1.0).margin(0.15));
+        }
+}
+
+TEST_CASE("Orders that nobody has asked for are those that a few lines can tell")
+{
+    const auto truth = resonances(2);
+    const auto few = measured(truth, logarithmic(20.0, 400.0, 8)), many = measured(truth, logarithmic(20.0, 400.0, 40));
+    CHECK(ordersWithin({1, 2, 3, 4, 5, 6, 7, 8}, many).back() == 8);
+    CHECK(ordersWithin({1, 2, 3, 4, 5, 6, 7, 8}, few) == std::vector {1, 2, 3});
+    CHECK(ordersWithin({2, 3, 4}, measured(truth, logarithmic(20.0, 400.0, 3))) == std::vector {2});
+    OrderSweepOptions options;
+    options.orders = ordersWithin({1, 2, 3, 4, 5, 6, 7, 8}, few);
+    options.identify.sampleRate = truth.sampleRate;
+    const auto sweep = sweepOrders(few, options);
+    REQUIRE(sweep.entries.size() == 3);
+    for (const auto& entry : sweep.entries)
+        CHECK(entry.found.model.order() == entry.order);
+    CHECK(sweep.entries[1].found.errorDb < -150.0);
+}
+
+TEST_CASE("What is known of the noise of each line stays as it is")
+{
+    Frf frf;
+    for (int k = 1; k <= 60; ++k) {
+        frf.frequency.push_back(10.0 * k);
+        frf.value.emplace_back(1.0, 0.1 * k);
+        frf.noiseVariance.push_back(1e-6 * std::exp(0.2 * k));  // steep, and even
+    }
+    auto data = frequencyDataOf(frf);
+    for (Eigen::Index k = 0; k < 60; ++k)
+        CHECK(data.deviation(k, 0) == Approx(std::sqrt(frf.noiseVariance[static_cast<std::size_t>(k)])).epsilon(1e-9));
+    // A line that sticks out keeps the better part of it.
+    frf.noiseVariance[30] *= 1e4;
+    data = frequencyDataOf(frf);
+    CHECK(data.deviation(30, 0) >= 0.4 * std::sqrt(frf.noiseVariance[30]));
+    // Lines without scatter, or none that can be told, have that of the others.
+    frf.noiseVariance[10] = 0.0;
+    frf.noiseVariance[11] = std::numeric_limits<double>::quiet_NaN();
+    data = frequencyDataOf(frf);
+    CHECK(data.isValid());
 }
 
 TEST_CASE("Bad input of an identification is told in a sentence")

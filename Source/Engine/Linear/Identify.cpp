@@ -22,6 +22,7 @@ using Eigen::MatrixXd;
 
 constexpr int cheapOrder = 20;            // up to here every start is tried, as it costs nothing
 constexpr std::size_t largeSearches = 3;  // above it as many of the best are refined to the end
+constexpr int prunedMore = 10;            // than twice the order: the model whose least sections are taken out
 
 StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool stable)
 {
@@ -92,13 +93,19 @@ SecondOrderSections fittedVectors(SecondOrderSections sections, const FrequencyD
     return sections;
 }
 
+/// What is pruned to an order: a larger one by whole pairs, as the lines tell it; without enough of them hardly larger,
+/// or none at all.
+int largerOrder(int order, const FrequencyData& data)
+{
+    const auto larger = static_cast<int>(std::min<Index>(2 * order + prunedMore, data.lines() / 8));
+    return larger + ((larger - order) % 2 != 0 ? 1 : 0);
+}
+
 /// The poles of a larger model, its least sections taken out one after the other.
 SecondOrderSections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
 {
     auto larger = options;
-    larger.order = static_cast<int>(std::min<Index>(2 * order + 10, data.lines() / 8));
-    if ((larger.order - order) % 2 != 0)
-        ++larger.order;
+    larger.order = largerOrder(order, data);
     double best = std::numeric_limits<double>::infinity();
     PartialFractionFit fit;
     for (const auto& model : subspaceModels(data, larger)) {
@@ -136,7 +143,7 @@ std::vector<PoleStart> allStarts(const FrequencyData& data, const IdentifyOption
             fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha), data,
                           10),
             data);
-    if (options.thorough && options.order >= 2) {
+    if (options.thorough && options.order >= 2 && largerOrder(options.order, data) >= options.order + 2) {
         progress.at(0.4, "pruning a larger model");
         add(starts, "pruned", prunedTo(options.order, data, options, scale), data);
     }

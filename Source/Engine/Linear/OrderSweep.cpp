@@ -69,6 +69,17 @@ bool OrderSweepOptions::isValid(std::string* reason) const
     return identify.isValid(reason);
 }
 
+std::vector<int> ordersWithin(const std::vector<int>& orders, const FrequencyData& data)
+{
+    std::vector<int> within;
+    for (const int order : orders) {
+        const auto parameters = order * (data.inputs + data.outputs) + data.inputs * data.outputs;
+        if (within.empty() || parameters <= data.value.size())
+            within.push_back(order);
+    }
+    return within;
+}
+
 OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& options, const FrequencyData* validation,
                        const Progress& progress)
 {

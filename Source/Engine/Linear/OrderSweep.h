@@ -17,6 +17,10 @@ struct OrderSweepOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
+/// Of orders that nobody has asked for those that a response can tell: as long as a model has no more than half as many
+/// parameters as the response has values; the lowest one in any case.
+std::vector<int> ordersWithin(const std::vector<int>& orders, const FrequencyData&);
+
 struct OrderSweepEntry {
     int order = 0;
     LinearIdentification found;

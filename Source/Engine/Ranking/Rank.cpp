@@ -154,7 +154,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
     progress.at(0.0, "the linear model");
     const auto response = frequencyDataOf(responseOf(given, {std::string(name(output->quantity)), {}, level}).frf);
     OrderSweepOptions sweeping;
-    sweeping.orders = {2, 3, 4, 5, 6, 8};
+    sweeping.orders = ordersWithin({2, 3, 4, 5, 6, 8}, response);
     sweeping.identify.sampleRate = take.sampleRate;
     const auto sweep = sweepOrders(response, sweeping);
     const auto linear = sweep.entries[sweep.chosen].found.model;
