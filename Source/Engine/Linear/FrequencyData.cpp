@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 namespace excursion {
@@ -15,12 +16,12 @@ namespace {
 
 bool isTold(double variance) { return variance > 0.0 && std::isfinite(variance); }
 
-/// On how many lines a variance must be told together to be known to 20 %, by how much it jumps from line to line: the
-/// logarithm of one that so many realizations (or periods) tell scatters by their number alone. The noise itself may be
-/// steep, so the jump is that from the line between two others to their middle.
+/// On how many lines a variance must be told together to be known to a sixth, by how much it jumps from line to line:
+/// the logarithm of one that so many realizations (or periods) tell scatters by their number alone. The noise itself
+/// may be steep, so the jump is that from the line between two others to their middle.
 std::size_t linesToShare(const std::vector<double>& variance)
 {
-    constexpr double enough = 24.0;  // degrees of freedom
+    constexpr double enough = 36.0;  // degrees of freedom
     std::vector<double> jumps;
     for (std::size_t k = 1; k + 1 < variance.size(); ++k)
         if (isTold(variance[k - 1]) && isTold(variance[k]) && isTold(variance[k + 1]))
@@ -35,34 +36,59 @@ std::size_t linesToShare(const std::vector<double>& variance)
     return static_cast<std::size_t>(std::ceil(enough / freedom));
 }
 
-/// The scatter of a few realizations tells the noise of a line only roughly, and a line that it makes too quiet by
-/// chance would weigh too much. So neighbouring lines share theirs; one that sticks out (hum) keeps its own. Where it
-/// is known well, nothing changes.
-std::vector<double> smoothed(const std::vector<double>& raw)
+/// The line through as many neighbours as share, at each place.
+std::vector<double> trendOf(const std::vector<double>& values, std::size_t share)
 {
-    const std::size_t share = linesToShare(raw), count = raw.size();
+    const std::size_t count = values.size(), width = std::min(share, count);
+    std::vector<double> trend(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t first = std::min(k > width / 2 ? k - width / 2 : 0, count - width);
+        const double n = static_cast<double>(width), middle = static_cast<double>(first) + 0.5 * (n - 1.0);
+        double mean = 0.0, slope = 0.0;
+        for (std::size_t j = first; j < first + width; ++j) {
+            mean += values[j] / n;
+            slope += values[j] * (static_cast<double>(j) - middle);
+        }
+        trend[k] = mean + (width > 1 ? slope * 12.0 / (n * (n * n - 1.0)) : 0.0) * (static_cast<double>(k) - middle);
+    }
+    return trend;
+}
+
+/// The scatter of a few realizations tells the noise of a line only roughly, and a line that it makes too quiet by
+/// chance would weigh too much. So neighbouring lines share theirs, in logarithms, as noise may be steep, and as it
+/// goes with the response: that of an impedance peaks where the impedance does. A line that sticks out (hum) keeps its
+/// own. Where the noise is known well, nothing changes.
+std::vector<double> smoothed(const std::vector<double>& raw, const std::vector<std::complex<double>>& response)
+{
+    const std::size_t share = linesToShare(raw);
     if (share < 2)
         return raw;
-    auto result = raw;
-    for (std::size_t k = 0; k < count; ++k) {
-        double sum = 0.0;
-        std::size_t lines = 0;
-        const auto add = [&](std::size_t line) {
-            if (std::isfinite(raw[line]) && raw[line] >= 0.0) {
-                sum += raw[line];
-                ++lines;
-            }
-        };
-        add(k);
-        for (std::size_t reach = 1; lines < share && reach < count; ++reach) {
-            if (reach <= k)
-                add(k - reach);
-            if (k + reach < count)
-                add(k + reach);
+    constexpr double mostPower = 4.0;  // of the response that a variance goes with
+    constexpr double mostOff = 10.0;   // times what the lines share: more is no scatter
+    std::vector<std::size_t> lines;
+    std::vector<double> variance, gain;  // logarithms
+    for (std::size_t k = 0; k < raw.size(); ++k)
+        if (isTold(raw[k]) && std::abs(response[k]) > 0.0) {
+            lines.push_back(k);
+            variance.push_back(std::log(raw[k]));
+            gain.push_back(std::log(std::abs(response[k])));
         }
-        if (lines > 0)
-            result[k] = std::max(sum / static_cast<double>(lines), std::isfinite(raw[k]) ? raw[k] / 6.0 : 0.0);
+    const auto shared = trendOf(variance, share), level = trendOf(gain, share);
+    double along = 0.0, power = 0.0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        along += (variance[i] - shared[i]) * (gain[i] - level[i]);
+        power += std::pow(gain[i] - level[i], 2);
     }
+    const double exponent = power > 0.0 ? std::clamp(along / power, 0.0, mostPower) : 0.0;
+    auto result = raw;
+    double mean = 0.0;  // of the variances over what a mean of logarithms makes of them
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        double& v = result[lines[i]];
+        v = std::exp(shared[i] + exponent * (gain[i] - level[i]));
+        mean += std::min(raw[lines[i]] / v, mostOff) / static_cast<double>(lines.size());
+    }
+    for (const auto k : lines)
+        result[k] = std::max(mean * result[k], raw[k] / 6.0);
     return result;
 }
 
@@ -94,7 +120,7 @@ FrequencyData frequencyDataOf(const Frf& frf)
     FrequencyData data;
     data.frequency = frf.frequency;
     data.value = Eigen::Map<const Eigen::VectorXcd>(frf.value.data(), static_cast<Index>(frf.value.size()));
-    const auto variance = smoothed(frf.totalVariance.empty() ? frf.noiseVariance : frf.totalVariance);
+    const auto variance = smoothed(frf.totalVariance.empty() ? frf.noiseVariance : frf.totalVariance, frf.value);
     double least = std::numeric_limits<double>::infinity();
     for (const double v : variance)
         if (isTold(v))

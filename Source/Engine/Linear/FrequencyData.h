@@ -28,8 +28,8 @@ struct FrequencyData {
 
 /// Of one frequency response. The deviation is the square root of the total variance, else of the noise variance, else
 /// empty. Of a few realizations a line's variance is told so roughly that neighbouring lines share theirs: the more
-/// they scatter from line to line the more lines do, about 24 for two realizations, 12 for three; a line that sticks
-/// out keeps a sixth of its own at least. Variances of zero, which a short record can show by chance, count as the
+/// they scatter from line to line the more lines do, about 36 for two realizations, 18 for three; what sticks out from
+/// them keeps a sixth of its own at least. Variances of zero, which a short record can show by chance, count as the
 /// smallest one above zero.
 FrequencyData frequencyDataOf(const Frf&);
 
