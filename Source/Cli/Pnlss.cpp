@@ -11,6 +11,7 @@
 #include "Engine/Error.h"
 #include "Engine/Polynomial/Pnlss/LinearStarts.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
+#include "Engine/Polynomial/Pnlss/Recursion.h"
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Ranking/Agreement.h"
@@ -182,66 +183,6 @@ Eigen::MatrixXd PnlssTake::wholeInput() const
     return Eigen::Map<const Eigen::VectorXd>(input->samples.data(), static_cast<Eigen::Index>(input->samples.size()));
 }
 
-Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
-{
-    Arrival told;
-    told.noiseDb = data.records.noiseDb;
-    if (!told.noiseDb && outcome.untold)
-        told.noiseDb = outcome.untold->db;
-    told.noiseFrom = data.records.noiseDb ? "periods" : "residual";
-    if (outcome.estimationDb <= exactDb) {
-        told.arrived = true;
-        told.sentence = "The error is below what any recording resolves.";
-        return told;
-    }
-    if (!told.noiseDb) {
-        told.sentence =
-            "It is not known whether the error is at the noise: neither periods nor the residual show the noise.";
-        return told;
-    }
-    const double above = outcome.estimationDb - *told.noiseDb;
-    told.arrived = data.records.noiseDb ? above <= atNoiseDb : outcome.untold->reachedBy(outcome.estimationDb);
-    const auto fewer = std::string("a longer take that goes everywhere early on, or fewer coefficients: --mask, "
-                                   "--terms, a lower --order or --degree.");
-    if (!told.arrived) {
-        told.sentence = "It is not known whether the error is at the noise: what is left is as slow as the motion, and "
-                        "may be noise or something that the model lacks.";
-        told.advice = "Try " + fewer;
-        return told;
-    }
-    if (*told.arrived) {
-        const auto noise = "The error is at the noise, " + errorText(*told.noiseDb) + " dB";
-        const double over = data.records.validation.empty() ? 0.0
-                                                            : heldOutDb(outcome.estimationDb, data.records.estimation,
-                                                                        outcome.validationDb, data.records.validation);
-        told.sentence = noise + ".";
-        if (over <= heldOutMostDb)
-            return told;
-        told.arrived.reset();
-        told.sentence = noise + ", on the records of the estimation. On those held out "
-                        + (std::isfinite(over) ? "it is " + errorText(over) + " dB larger" : "the model runs away")
-                        + ", so it is not known whether this is the system.";
-        told.advice = "Try " + fewer;
-        return told;
-    }
-    told.sentence = (options.model.empty() ? "The fit did not arrive: its error is " : "The error is ")
-                    + errorText(above) + " dB above the noise, "
-                    + (data.records.noiseDb ? errorText(*told.noiseDb) + " dB by the scatter of the periods"
-                                            : "as the input still tells that much of it; what it does not tell is "
-                                                  + errorText(*told.noiseDb) + " dB or less")
-                    + (options.model.empty() && outcome.estimationDb > outcome.startDb - 1.0
-                           ? ", and no better than its start."
-                           : ".");
-    const auto more = options.mask != "full" ? std::string(", --mask full") : std::string();
-    told.advice = "Try "
-                  + (options.model.empty() && outcome.search.termination == Termination::maximumIterations
-                         ? "--iterations " + std::to_string(4 * options.iterations) + ", "
-                         : std::string())
-                  + (outcome.alpha.empty() ? "--start with a model of identify or of another take, " : "")
-                  + "a higher --order or --degree" + more + ".";
-    return told;
-}
-
 TermMask maskNamed(const std::string& wanted)
 {
     for (const auto mask : termMasks())
@@ -285,7 +226,14 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
             "",
             {},
             {},
-            fit.untold};
+            fit.untold,
+            Recursion(fit.model, true).parameters()};
+        std::vector<Eigen::MatrixXd> played;
+        for (std::size_t k = 0; k < estimation.size(); ++k)
+            played.push_back(
+                simulate(starts[0].model, estimation[k].input,
+                         k < starts[0].initialStates.size() ? starts[0].initialStates[k] : Eigen::VectorXd()));
+        outcome.constantShare = constantShareOf(starts[0].model.exponents, estimation, played);
         named = {std::filesystem::path(options.response.path).stem().string(),
                  {std::string(name(data.input->quantity))},
                  {std::string(name(data.output->quantity))},

@@ -27,7 +27,8 @@ struct PnlssArguments {
 
 /// What the two kinds of polynomial models tell alike.
 struct PnlssOutcome {
-    double startDb = 0.0;  ///< validation error of the linear part alone; not of a model that was kept
+    /// error of the linear part alone, on the validation records where there are any; not of a model that was kept
+    double startDb = 0.0;
     double estimationDb = 0.0, validationDb = 0.0;
     bool stable = false;
     SearchSummary search;  ///< not of a model that was kept
@@ -37,6 +38,8 @@ struct PnlssOutcome {
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
     /// of a take without periods: what is left that the input does not tell
     std::optional<UntoldNoise> untold {};
+    Eigen::Index parameters = 0;  ///< that the fit moved; not of a model that was kept
+    double constantShare = 0.0;   ///< of a fit, see constantShareOf()
 };
 
 /// A take with what is to be explained by what.
@@ -59,6 +62,11 @@ struct Arrival {
 };
 
 Arrival arrivalOf(const PnlssArguments&, const PnlssTake&, const PnlssOutcome&);
+
+/// Of the power that a start leaves of the records, the share of a constant, which no model without the monomial 1
+/// follows; 0 of a model that has it. @param played  what the start plays, one a record
+double constantShareOf(const Exponents&, const std::vector<InputOutputRecord>&,
+                       const std::vector<Eigen::MatrixXd>& played);
 
 TermMask maskNamed(const std::string&);
 

@@ -9,6 +9,7 @@
 #include "Engine/Fractional/FractionalIdentify.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
 
 #include <cmath>
 #include <filesystem>
@@ -81,7 +82,13 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
                    fit.history,
                    withError(fit.model.alpha, fit.alphaStandardError),
                    {},
-                   {}};
+                   {},
+                   {},
+                   FractionalRecursion(fit.model, grid, true, !alpha).parameters()};
+        std::vector<Eigen::MatrixXd> played;
+        for (const auto& record : estimation)
+            played.push_back(simulate(start, record.input, grid));
+        outcome.constantShare = constantShareOf(start.form.exponents, estimation, played);
         named = {std::filesystem::path(options.response.path).stem().string(),
                  {std::string(name(data.input->quantity))},
                  {std::string(name(data.output->quantity))},

@@ -13,6 +13,18 @@ namespace excursion {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+namespace {
+
+/// Of judged samples. Over whole periods their mean is left out: a sensor's offset would decide which model is better.
+double comparedPower(const InputOutputRecord& record, MatrixXd samples)
+{
+    if (record.periodic)
+        samples.rowwise() -= samples.colwise().mean().eval();
+    return samples.squaredNorm();
+}
+
+}  // namespace
+
 void requireFitting(const std::vector<InputOutputRecord>& estimation, const std::vector<InputOutputRecord>& validation,
                     Index inputs, Index outputs)
 {
@@ -55,7 +67,7 @@ double judgedPower(const std::vector<InputOutputRecord>& records)
 {
     double power = 0.0;
     for (const auto& record : records)
-        power += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
+        power += comparedPower(record, record.output.bottomRows(record.output.rows() - record.skip));
     return power;
 }
 
@@ -76,7 +88,7 @@ double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::ve
         return std::numeric_limits<double>::quiet_NaN();
     double error = 0.0;
     for (std::size_t k = 0; k < records.size(); ++k)
-        error += judgedError(records[k], modelled[k]).squaredNorm();
+        error += comparedPower(records[k], judgedError(records[k], modelled[k]));
     return std::isfinite(error) ? decibelsOf(error / judgedPower(records)) : std::numeric_limits<double>::infinity();
 }
 

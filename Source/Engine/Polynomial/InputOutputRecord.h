@@ -52,7 +52,7 @@ void requireFitting(const Options& options, double sampleRate, const std::vector
 /// measured - modelled, of the samples after `skip`.
 Eigen::MatrixXd judgedError(const InputOutputRecord&, const Eigen::MatrixXd& modelled);
 
-/// |measured|^2 of the samples after `skip`, of all records.
+/// |measured|^2 of the samples after `skip`, of all records; of whole periods without their mean.
 double judgedPower(const std::vector<InputOutputRecord>&);
 
 /// Folds [derivatives, error] of a stretch of a record's samples, `first` and those after it, as far as they are
@@ -62,7 +62,8 @@ void foldJudged(TallQr&, const InputOutputRecord&, Eigen::Index first, const Eig
                 const Eigen::VectorXd& error);
 
 /// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` [B 4.26]; +infinity where the
-/// model ran away, NaN without records.
+/// model ran away, NaN without records. The mean of whole periods is not compared: sensors have offsets, and a model
+/// that can make a constant would be told to explain more.
 /// @param modelled  one a record, N x p
 double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<InputOutputRecord>&);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace excursion {
 namespace {
@@ -15,16 +16,34 @@ Eigen::MatrixXd columnOf(std::span<const double> samples)
     return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Eigen::Index>(samples.size()));
 }
 
-/// Of all periods of a realization around their mean, summed.
-double scatterOf(const Measurement& take, const Channel& output, int level, int realization,
-                 const std::vector<double>& mean)
+/// Of the output's periods around their mean, summed over all samples, as far as it does not follow the input's
+/// scatter: Y_p - G U_p, G = Ybar/Ubar (see Estimate/Bla.h). Between two excited lines G is what lies between theirs;
+/// beyond them it is not known, and the output's scatter counts as it is. The mean, line 0, is left out.
+double scatterOf(const Measurement& take, const Channel& input, const Channel& output, int level, int realization)
 {
-    double scatter = 0.0;
-    for (int p = 0; p < take.excitation->periods; ++p) {
-        const auto period = onePeriod(take, output, level, realization, p);
-        for (std::size_t t = 0; t < mean.size(); ++t)
-            scatter += std::pow(period[t] - mean[t], 2);
+    using Complex = std::complex<double>;
+    const auto U = periodSpectra(take, input, level, realization), Y = periodSpectra(take, output, level, realization);
+    const auto meanU = averageOf(U).mean, meanY = averageOf(Y).mean;
+    const std::size_t lines = meanY.size();
+    std::vector<Complex> G(lines, 0.0);
+    std::optional<std::size_t> last;
+    for (const int line : excitedLines(take)) {
+        const auto k = static_cast<std::size_t>(line);
+        if (std::norm(meanU[k]) == 0.0)
+            continue;
+        G[k] = meanY[k] / meanU[k];
+        for (std::size_t between = last.value_or(k) + 1; between < k; ++between)
+            G[between] = G[*last]
+                         + (G[k] - G[*last]) * static_cast<double>(between - *last) / static_cast<double>(k - *last);
+        last = k;
     }
+    const int N = take.excitation->period;
+    double scatter = 0.0;
+    for (std::size_t p = 0; p < Y.size(); ++p)
+        for (std::size_t k = 1; k < lines; ++k) {
+            const bool nyquist = 2 * k == static_cast<std::size_t>(N);
+            scatter += (nyquist ? 1.0 : 2.0) * std::norm(Y[p][k] - meanY[k] - G[k] * (U[p][k] - meanU[k])) / N;
+        }
     return scatter;
 }
 
@@ -42,14 +61,17 @@ InputOutputRecords recordsOf(const Measurement& take, const Channel& input, cons
         return records;
     }
     const auto& excitation = periodicExcitation(take);
-    // Long enough for the slowest pole of a loudspeaker, which a few thousand samples at a high rate are not.
-    const auto before = std::max<Eigen::Index>(std::min(excitation.period, 4096), std::lround(0.2 * take.sampleRate));
+    // Long enough for a resonance of a high Q, which a few thousand samples at a high rate are not.
+    const auto before = std::max<Eigen::Index>(
+        std::min<Eigen::Index>(excitation.period, std::lround(2.0 * take.sampleRate)),
+        std::lround(0.2 * take.sampleRate));
     const int level = excitation.levelOf(wantedLevel);
     double scatter = 0.0, power = 0.0;
     for (int r = 0; r < excitation.realizations; ++r) {
         const auto mean = averagePeriod(take, output, level, r);
-        scatter += scatterOf(take, output, level, r, mean);
-        power += columnOf(mean).squaredNorm();
+        if (excitation.periods > 1)
+            scatter += scatterOf(take, input, output, level, r);
+        power += (columnOf(mean).array() - columnOf(mean).mean()).matrix().squaredNorm();
         const auto record = periodicRecord(columnOf(averagePeriod(take, input, level, r)), columnOf(mean), before);
         const bool last = excitation.realizations > 1 && r + 1 == excitation.realizations;
         (last ? records.validation : records.estimation).push_back(record);

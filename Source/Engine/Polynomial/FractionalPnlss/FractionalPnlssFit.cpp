@@ -172,6 +172,7 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
     static_cast<SearchSummary&>(result) = summary;
     if (!std::isfinite(result.estimationDb))
         return result;
+    result.estimationDb = relativeErrorDb(result.model, grid, estimation);  // without the mean, which the search lowers
     if (options.alphaFree && start.fractional.any()) {
         Index samples = 0;
         for (const auto& record : estimation)

@@ -109,8 +109,7 @@ public:
             way.judgedDb = validation_.empty() ? end.estimationDb : end.validationDb;
             way.fit = std::move(end);
         }
-        return validation_.empty() || way.fit.estimationDb <= exactDb
-               || heldOutDb(way.fit.estimationDb, estimation_, way.fit.validationDb, validation_) <= heldOutMostDb;
+        return validation_.empty() || holds(way.fit);
     }
 
     /// On by simulation, until the way has this many iterations.
@@ -207,7 +206,17 @@ private:
     {
         if (!fit.untold)
             fit.untold = untoldNoise(fit.model, estimation_, fit.initialStates);
-        return fit.estimationDb <= exactDb || (fit.untold && fit.untold->reachedBy(fit.estimationDb).value_or(false));
+        // As many coefficients as samples leave nothing of any record, and that is no noise.
+        if (fit.estimationDb <= exactDb)
+            return validation_.empty() ? 2.0 * static_cast<double>(problem_.parameters()) < samplesJudged()
+                                       : holds(fit);
+        return fit.untold && fit.untold->reachedBy(fit.estimationDb).value_or(false);
+    }
+
+    /// What was not fitted is explained as well.
+    bool holds(const PnlssFit& fit) const
+    {
+        return isHeld(fit.estimationDb, estimation_, fit.validationDb, validation_);
     }
 
     std::vector<VectorXd> validationStates(const std::vector<VectorXd>& estimated) const

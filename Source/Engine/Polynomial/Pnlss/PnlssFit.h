@@ -29,7 +29,8 @@ struct PnlssFit : SearchSummary {
     double estimationDb = 0.0, validationDb = 0.0;
     std::optional<UntoldNoise> untold;  ///< what is left that the input does not tell, where the residual was judged
     bool stable = false;                ///< its linear part is stable and no record made it run away
-    /// relative rms error in dB on the estimation records after each accepted step of the way that was kept
+    /// relative rms error in dB, mean and all, on the estimation records after each accepted step of the way that was
+    /// kept
     std::vector<double> history;
 };
 

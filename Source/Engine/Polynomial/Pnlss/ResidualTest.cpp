@@ -141,6 +141,12 @@ double heldOutDb(double estimationDb, const std::vector<InputOutputRecord>& esti
     return validationDb + sampleDb(validation) - estimationDb - sampleDb(estimation);
 }
 
+bool isHeld(double estimationDb, const std::vector<InputOutputRecord>& estimation, double validationDb,
+            const std::vector<InputOutputRecord>& validation)
+{
+    return validationDb <= exactDb || heldOutDb(estimationDb, estimation, validationDb, validation) <= heldOutMostDb;
+}
+
 std::optional<UntoldNoise> untoldNoise(const Pnlss& model, const std::vector<InputOutputRecord>& records,
                                        const std::vector<VectorXd>& initial)
 {

@@ -47,4 +47,8 @@ constexpr double heldOutMostDb = 6.0;
 /// No recorded signal resolves an error below this, nor need a fit go further.
 constexpr double exactDb = -120.0;
 
+/// Whether what was held out is explained as well as what was fitted, or exactly.
+bool isHeld(double estimationDb, const std::vector<InputOutputRecord>& estimation, double validationDb,
+            const std::vector<InputOutputRecord>& validation);
+
 }  // namespace excursion
