@@ -77,18 +77,23 @@ MatrixXd BlockError::factor(const VectorXd& values)
     TallQr qr(values.size() + 1);
     for (const auto& record : records_) {
         const VectorXd u = record.input.col(0), w = simulate(model.linear, u);
-        const MatrixXd dw = derivatives(model, u);
-        MatrixXd dG = (1.0 + polynomialSlope(model.wiener, w.array())).matrix().asDiagonal() * dw;
-        if (model.feedback.size() > 0)
-            dG += filtered(model.linear, polynomialSlope(model.feedback, w.array()).matrix().asDiagonal() * dw);
-        if (model.hammerstein.size() + model.feedback.size() > 0)
-            dG += derivatives(model, polynomial(model.hammerstein, u.array()) + polynomial(model.feedback, w.array()));
+        // A long record times all coefficients is large: every column is made where it stays.
         MatrixXd rows(u.size(), values.size() + 1);
-        rows << dG, filtered(model.linear, powersOf(u, 2, model.hammerstein.size())),
-            powersOf(w, 2, model.wiener.size()), filtered(model.linear, powersOf(w, 2, model.feedback.size())),
-            VectorXd::Ones(u.size()), record.output - simulate(model, record.input);
-        MatrixXd judged = rows.bottomRows(rows.rows() - record.skip);
-        qr.fold(judged);
+        const Index ofG = recursion_.parameters(), powers = values.size() - ofG - 1;
+        rows.leftCols(ofG) = derivatives(model, u);
+        const VectorXd direct = 1.0 + polynomialSlope(model.wiener, w.array()),
+                       back = polynomialSlope(model.feedback, w.array());
+        for (auto dw : rows.leftCols(ofG).colwise()) {
+            const VectorXd dG = direct.cwiseProduct(dw);
+            dw = model.feedback.size() > 0 ? VectorXd(dG + filtered(model.linear, back.cwiseProduct(dw))) : dG;
+        }
+        if (model.hammerstein.size() + model.feedback.size() > 0)
+            rows.leftCols(ofG) += derivatives(model, polynomial(model.hammerstein, u.array())
+                                                         + polynomial(model.feedback, w.array()));
+        rows.middleCols(ofG, powers) << filtered(model.linear, powersOf(u, 2, model.hammerstein.size())),
+            powersOf(w, 2, model.wiener.size()), filtered(model.linear, powersOf(w, 2, model.feedback.size()));
+        rows.rightCols(2) << VectorXd::Ones(u.size()), record.output - simulate(model, record.input);
+        qr.fold(rows.bottomRows(rows.rows() - record.skip));
     }
     return qr.R() / std::sqrt(power_);
 }
