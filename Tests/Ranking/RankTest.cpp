@@ -9,12 +9,14 @@
 #include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Ranking/Rank.h"
+#include "Linear/Problem.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
 using namespace excursion;
+using excursion::test::Normal;
 
 namespace {
 
@@ -91,6 +93,72 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     CHECK_FALSE(named(ranking, "driver").predistortion.trouble.empty());
     CHECK(ranking.straightest == "driver-with-effects");
     CHECK(ranking.straightSentence.find("\"driver-with-effects\" linearizes best") == 0);
+}
+
+TEST_CASE("The class that explains most is a stable one, be there a better one that is not")
+{
+    const auto ranked = [](const char* name, double errorDb, int parameters, bool stable) {
+        RankedModel model;
+        model.name = name;
+        model.validationDb = errorDb;
+        model.parameters = parameters;
+        model.stable = stable;
+        return model;
+    };
+    std::vector<RankedModel> models {ranked("narx", -60.0, 10, false), ranked("pnlss", -50.0, 80, true),
+                                     ranked("block", -49.8, 20, true), ranked("linear", -20.0, 7, true)};
+    REQUIRE(explainingMost(models));
+    CHECK(explainingMost(models)->name == "block");
+    models[1].trouble = models[2].trouble = "It was not fitted.";
+    CHECK(explainingMost(models)->name == "linear");
+    models[3].stable = false;
+    CHECK_FALSE(explainingMost(models));
+    CHECK_FALSE(explainingMost({}));
+}
+
+TEST_CASE(
+    "A polynomial model of a record without periods comes to its noise in a ranking, whatever the sensor's offset")
+{
+    // A resonance with a hardening spring, amid a swing, and heard with noise 60 dB below and an offset
+    Measurement take;
+    take.sampleRate = 1000.0;
+    Channel voltage, displacement;
+    displacement.quantity = Quantity::displacement;
+    displacement.unit = "m";
+    Normal normal(11);
+    double x = 0.0, v = 1.0;
+    for (int t = 0; t < 1800; ++t) {
+        const double u = normal();
+        voltage.samples.push_back(u);
+        displacement.samples.push_back(x + 0.3 + 6e-4 * normal());
+        const double next = x + 0.3 * v;
+        v = 0.8 * v - 0.3 * x - 0.05 * x * x * x + 0.2 * u;
+        x = next;
+    }
+    voltage.fullScale = displacement.fullScale = 100.0;
+    take.channels = {voltage, displacement};
+    RankOptions options;
+    options.classes = {"linear", "pnlss"};
+    options.order = 2;
+    const auto ranking = rank(take, options);
+    REQUIRE(ranking.models.size() == 2);
+    const auto& model = named(ranking, "pnlss");
+    CAPTURE(model.trouble, model.description, model.estimationDb, model.validationDb);
+    CHECK(model.trouble.empty());
+    CHECK(model.validationDb < -50.0);
+    CHECK(ranking.best == "pnlss");
+}
+
+TEST_CASE("A Hammerstein model rings as long as a woofer at 48 kHz", "[slow]")
+{
+    const auto take = takeOf(12, "", {Quantity::voltage, Quantity::displacement});
+    RankOptions options;
+    options.classes = {"linear", "hammerstein"};
+    const auto ranking = rank(take, options);
+    const auto& model = named(ranking, "hammerstein");
+    CAPTURE(model.description, model.validationDb, model.fitSeconds, *ranking.noiseDb);
+    CHECK(model.validationDb < -40.0);
+    CHECK(model.fitSeconds < 120.0);
 }
 
 TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does not fit the take is told so")

@@ -63,9 +63,7 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
                            const BlackBoxRehearsalOptions& options, const Progress& progress)
 {
     const double rate = box.linear.sampleRate;
-    int period = 4096;
-    while (period < 1 << 16 && rate / period > 0.25 * box.stimulus.lowest())
-        period *= 2;
+    const int period = periodFor(box.stimulus, rate);
     const auto input = playedAs(box.stimulus, rate, period, 3);
     const int lead = period;
     BlackBox plain = box;

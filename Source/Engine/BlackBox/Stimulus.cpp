@@ -130,6 +130,14 @@ std::vector<double> playedAs(const Stimulus& stimulus, double sampleRate, int pe
     return inverseFft(X, static_cast<std::size_t>(period));
 }
 
+int periodFor(const Stimulus& stimulus, double sampleRate)
+{
+    int period = 4096;
+    while (period < 1 << 16 && sampleRate / period > 0.25 * stimulus.lowest())
+        period *= 2;
+    return period;
+}
+
 nlohmann::ordered_json toJson(const Stimulus& stimulus)
 {
     return {

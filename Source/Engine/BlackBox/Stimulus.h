@@ -39,6 +39,10 @@ Stimulus stimulusOf(const std::vector<InputOutputRecord>&, double sampleRate);
 std::vector<double> playedAs(const Stimulus&, double sampleRate, int period, std::uint64_t seed,
                              std::vector<int>* lines = nullptr);
 
+/// How long such a period is at a rate: a power of two from 4096 samples on, until four lines lie below the lowest
+/// frequency of the stimulus; 65536 at most.
+int periodFor(const Stimulus&, double sampleRate);
+
 nlohmann::ordered_json toJson(const Stimulus&);
 
 /// Reads the field "stimulus" of a model's document; none if it is absent. Throws Error (input).

@@ -19,6 +19,7 @@
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Narx/NarxFit.h"
 #include "Engine/Polynomial/Narx/NarxRecursion.h"
+#include "Engine/Polynomial/Pnlss/LinearStarts.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
@@ -31,6 +32,9 @@
 
 namespace excursion {
 namespace {
+
+constexpr double ringingSeconds = 0.1;
+constexpr Eigen::Index mostTaps = 262144;  // of all branches of a Hammerstein model
 
 std::string ofOrder(const char* words, Eigen::Index order, int degree)
 {
@@ -88,6 +92,14 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
             isStable(model, grid), nullptr};
 }
 
+/// With all monomials, and a constant in the output: a sensor's offset is no dynamics.
+Pnlss withAllTerms(const StateSpace& linear, int degree)
+{
+    auto model = withTerms(linear, degree, TermMask::full, true);
+    model.free.col(0).head(linear.order()).setConstant(false);
+    return model;
+}
+
 }  // namespace
 
 FittedClass fitLinearClass(const RankedTake& data, const Progress&)
@@ -115,8 +127,20 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
 {
     HammersteinFitOptions fitting;
     fitting.degree = data.degree;
-    const auto fit = fitHammerstein(data.take.measurement().sampleRate, data.records.estimation,
-                                    data.records.validation, fitting, progress);
+    const double rate = data.take.measurement().sampleRate;
+    // As long as a woofer rings. Where that is too long for the filters to be solved at once, short ones are tried as
+    // well, whose length and regularization are chosen.
+    const auto ringing = std::min<Eigen::Index>(std::lround(ringingSeconds * rate), mostTaps / data.degree);
+    const bool longer = ringing > fitting.length && !data.records.validation.empty();
+    auto fit = fitHammerstein(rate, data.records.estimation, data.records.validation, fitting,
+                              progress.part(0.0, longer ? 0.3 : 1.0));
+    if (longer) {
+        fitting.length = ringing;
+        auto other = fitHammerstein(rate, data.records.estimation, data.records.validation, fitting,
+                                    progress.part(0.3, 1.0));
+        if (other.validationDb < fit.validationDb)
+            fit = std::move(other);
+    }
     return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true, documentOf(data, "hammerstein", fit.model)};
@@ -127,8 +151,15 @@ FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
     BlockModelFitOptions fitting;
     fitting.degree = data.degree;
     fitting.maximumIterations = data.iterations;
-    const auto fit = fitBlockModel(data.linear, data.records.estimation, data.records.validation, fitting, progress);
-    auto description = ofOrder("", data.linear.order(), fitting.degree);
+    auto linear = data.linear;
+    if (linear.order() > data.order) {
+        IdentifyOptions identifying;
+        identifying.sampleRate = data.take.measurement().sampleRate;
+        identifying.order = data.order;
+        linear = identify(data.response, identifying).model;
+    }
+    const auto fit = fitBlockModel(linear, data.records.estimation, data.records.validation, fitting, progress);
+    auto description = ofOrder("", linear.order(), fitting.degree);
     for (const auto& step : fit.steps)
         if (step.branch)
             description += ", " + std::string(name(*step.branch));
@@ -152,18 +183,15 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
 
 FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
 {
-    IdentifyOptions identifying;
-    identifying.sampleRate = data.take.measurement().sampleRate;
+    const auto& validation = data.records.validation;
+    auto estimation = data.records.estimation;
+    const double rate = data.take.measurement().sampleRate;
     PnlssFitOptions fitting;
     fitting.maximumIterations = data.iterations;
     fitting.enoughDb = data.records.enoughDb();
     PnlssFit best;
     double least = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](const Pnlss& start, PnlssSearch search, const Progress& part) {
-        if (least < fitting.enoughDb)
-            return;
-        fitting.search = search;
-        auto fit = fitPnlss(start, data.records.estimation, data.records.validation, fitting, part);
+    const auto consider = [&](PnlssFit fit) {
         const double error = std::isnan(fit.validationDb) ? fit.estimationDb : fit.validationDb;
         if (best.model.linear.order() == 0 || error < least) {
             least = error;
@@ -174,18 +202,41 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     std::vector<int> orders {data.order};
     if (!data.orderGiven && data.order != 3)
         orders.push_back(3);
-    std::vector<Pnlss> starts;
-    for (const int order : orders) {
-        identifying.order = order;
-        starts.push_back(withTerms(identify(data.response, identifying).model, data.degree));
-    }
+    const auto count = static_cast<double>(orders.size());
     double done = 0.0;
-    for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
-        for (const auto& start : starts) {
-            const double share = 1.0 / (3.0 * static_cast<double>(starts.size()));
-            attempt(start, search, progress.part(done, std::min(1.0, done + share)));
-            done += share;
+    if (estimation.front().periodic) {
+        IdentifyOptions identifying;
+        identifying.sampleRate = rate;
+        std::vector<Pnlss> starts;
+        for (const int order : orders) {
+            identifying.order = order;
+            starts.push_back(withAllTerms(identify(data.response, identifying).model, data.degree));
         }
+        for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
+            for (const auto& start : starts) {
+                const auto part = progress.part(done, std::min(1.0, done + 1.0 / (3.0 * count)));
+                done += 1.0 / (3.0 * count);
+                if (least < fitting.enoughDb)
+                    continue;
+                fitting.search = search;
+                consider(fitPnlss(start, estimation, validation, fitting, part));
+            }
+    } else {
+        // One record is played from its first sample on, whose state is estimated, and tells its noise by what is left.
+        estimation.front().skip = 0;
+        fitting.estimateInitialStates = fitting.judgeResidual = true;
+        for (const int order : orders) {
+            std::vector<PnlssStart> starts;
+            for (const auto& linear : linearStarts(estimation.front(), rate, order))
+                starts.push_back({withAllTerms(linear.model, data.degree), {linear.initial}});
+            consider(fitPnlss(starts, estimation, validation, fitting,
+                              progress.part(done, std::min(1.0, done + 1.0 / count))));
+            done += 1.0 / count;
+            if (best.untold && best.untold->reachedBy(best.estimationDb).value_or(false)
+                && isHeld(best.estimationDb, estimation, best.validationDb, validation))
+                break;
+        }
+    }
     return {
         [model = best.model](const InputOutputRecord& record) { return simulate(model, record.input); },
         ofOrder("", best.model.linear.order(), data.degree), static_cast<int>(Recursion(best.model, true).parameters()),

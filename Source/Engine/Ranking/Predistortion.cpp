@@ -22,15 +22,18 @@ namespace {
 
 constexpr double worthTelling = 3.0, noDistortion = -120.0;  // dB
 constexpr double belowNoise = 0.1;                           // of the noise: what the take could not show
-constexpr int stimulusPeriod = 16384, stimulusPeriods = 5;
+constexpr double stimulusSeconds = 1.5;                      // at least, the last period being that which counts
+constexpr int stimulusPeriods = 5;                           // at least
 constexpr std::uint64_t stimulusSeed = 3;
 
 /// Periods of what the model was fitted under.
 std::vector<double> stimulusPlayed(const Stimulus& stimulus, double rate)
 {
-    const auto period = playedAs(stimulus, rate, stimulusPeriod, stimulusSeed);
+    const int length = periodFor(stimulus, rate);
+    const auto period = playedAs(stimulus, rate, length, stimulusSeed);
     std::vector<double> signal;
-    for (int k = 0; k < stimulusPeriods; ++k)
+    const int periods = std::max(stimulusPeriods, static_cast<int>(std::ceil(stimulusSeconds * rate / length)));
+    for (int k = 0; k < periods; ++k)
         signal.insert(signal.end(), period.begin(), period.end());
     return signal;
 }
@@ -67,8 +70,9 @@ RankedPredistortion ofBox(const JsonField& document, double rate, const Progress
     return told;
 }
 
-/// The last period of a channel of the driver, without its mean.
-Eigen::VectorXd lastPeriod(const Model& model, const std::vector<double>& volts, double rate, Quantity output)
+/// The last period, of so many samples, of a channel of the driver, without its mean.
+Eigen::VectorXd lastPeriod(const Model& model, const std::vector<double>& volts, int period, double rate,
+                           Quantity output)
 {
     const auto played = simulate(model, std::span<const double>(volts), rate, {});
     const auto* channel = played.find(output);
@@ -76,7 +80,7 @@ Eigen::VectorXd lastPeriod(const Model& model, const std::vector<double>& volts,
         throw Error(Error::Kind::data, "The physical driver does not know this channel.");
     Eigen::VectorXd last = Eigen::Map<const Eigen::VectorXd>(channel->samples.data(),
                                                              static_cast<Eigen::Index>(channel->samples.size()))
-                               .tail(stimulusPeriod);
+                               .tail(period);
     last.array() -= last.mean();
     return last;
 }
@@ -99,9 +103,10 @@ RankedPredistortion ofDriver(const JsonField& document, const std::string& outpu
     Predistorter predistorter(model, {rate, 2});
     told.load = predistort(predistorter, bent, rate);
     told.latency = predistorter.latency() / rate;
-    const auto straight = lastPeriod(linearPart(model), plain, rate, *quantity);
+    const int period = periodFor(*stimulus, rate);
+    const auto straight = lastPeriod(linearPart(model), plain, period, rate, *quantity);
     const auto over = [&](const std::vector<double>& volts) {
-        return decibelsOf((lastPeriod(model, volts, rate, *quantity) - straight).squaredNorm()
+        return decibelsOf((lastPeriod(model, volts, period, rate, *quantity) - straight).squaredNorm()
                           / straight.squaredNorm());
     };
     told.beforeDb = over(plain);
@@ -137,7 +142,7 @@ RankedPredistortion predistortionOf(const RankedModel& model, const std::string&
         told.trouble = "It makes no distortion to speak of: there is nothing to correct.";
         return told;
     }
-    const double error = std::isnan(model.validationDb) ? model.estimationDb : model.validationDb;
+    const double error = model.judgedDb();
     const double noise = noiseDb ? powerOf(*noiseDb) : 0.0,
                  unexplained = std::max(powerOf(error) - noise, belowNoise * noise);
     told.leftDb = decibelsOf(powerOf(told.modelDb) + unexplained);

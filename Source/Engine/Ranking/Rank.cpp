@@ -15,6 +15,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <new>
 
 namespace excursion {
 namespace {
@@ -84,6 +85,8 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         model.stable = fitted.stable && std::isfinite(model.estimationDb) && std::isfinite(judged);
     } catch (const Error& e) {
         model.trouble = e.what();
+    } catch (const std::bad_alloc&) {
+        model.trouble = "There is not enough memory to fit it to so long a take.";
     }
     return model;
 }
@@ -123,6 +126,17 @@ bool RankOptions::isValid(std::string* reason) const
         if (std::none_of(fittings().begin(), fittings().end(), [&](const Fitting& f) { return f.told.name == wanted; }))
             return refuse(reason, "there is no class of models \"" + wanted + "\"");
     return true;
+}
+
+const RankedModel* explainingMost(const std::vector<RankedModel>& models)
+{
+    const auto counts = [](const RankedModel& m) { return m.trouble.empty() && m.stable; };
+    const auto first = std::find_if(models.begin(), models.end(), counts);
+    const RankedModel* chosen = nullptr;
+    for (auto m = first; m != models.end(); ++m)
+        if (counts(*m) && m->judgedDb() < first->judgedDb() + 0.5 && (!chosen || m->parameters < chosen->parameters))
+            chosen = &*m;
+    return chosen;
 }
 
 const std::vector<ModelClass>& modelClasses()
@@ -177,22 +191,14 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
                 judge(fitting, data, progress.part(done, std::min(0.95, done + 0.93 * fitting.share))));
         done += 0.93 * fitting.share;
     }
-    const auto error = [](const RankedModel& m) {
-        return std::isnan(m.validationDb) ? m.estimationDb : m.validationDb;
-    };
-    std::stable_sort(ranking.models.begin(), ranking.models.end(), [&](const RankedModel& a, const RankedModel& b) {
-        return a.trouble.empty() != b.trouble.empty() ? a.trouble.empty() : error(a) < error(b);
+    std::stable_sort(ranking.models.begin(), ranking.models.end(), [](const RankedModel& a, const RankedModel& b) {
+        return a.trouble.empty() != b.trouble.empty() ? a.trouble.empty() : a.judgedDb() < b.judgedDb();
     });
-    // A tenth of a decibel is no reason: among equals the smallest is told.
-    const RankedModel* chosen = nullptr;
-    for (const auto& model : ranking.models)
-        if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5
-            && (!chosen || model.parameters < chosen->parameters))
-            chosen = &model;
+    const auto* chosen = explainingMost(ranking.models);
     ranking.best = chosen ? chosen->name : "";
     ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters)
                                     + " parameters."
-                              : "No stable model explains the take best.";
+                              : "No model of this take is stable.";
     for (auto& model : ranking.models)
         if (model.trouble.empty()) {
             progress.at(0.95, "inverting " + model.name);

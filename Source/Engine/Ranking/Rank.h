@@ -36,6 +36,10 @@ struct Ranking {
     std::string straightSentence;  ///< which one it is, what it leaves, load and latency; or that there is none
 };
 
+/// Of models in the order of their errors the one that explains most: a tenth of a decibel is no reason, so of the
+/// stable ones within half a decibel of the best stable one that with the fewest parameters. Null if none is stable.
+const RankedModel* explainingMost(const std::vector<RankedModel>&);
+
 struct ModelClass {
     std::string name;
     std::string sentence;  ///< what it is

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <string>
 
 namespace excursion {
@@ -34,6 +35,7 @@ struct RankedModel {
     /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear fractional class
     nlohmann::ordered_json document = nullptr;
     std::string kept;  ///< path of the file that holds it; empty where it was not kept
+    double judgedDb() const { return std::isnan(validationDb) ? estimationDb : validationDb; }
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
     RankedPredistortion predistortion;
