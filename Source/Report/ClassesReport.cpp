@@ -70,22 +70,23 @@ void addRankingOfClasses(Page& page, const Ranking& ranking)
             troubles.push_back(model.name + ": " + model.trouble);
             continue;
         }
-        const double judged = std::isfinite(model.validationDb)   ? model.validationDb
-                              : std::isfinite(model.estimationDb) ? model.estimationDb
-                                                                  : std::numeric_limits<double>::quiet_NaN();
         const double parameters = model.parameters;
-        classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
-        classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
-        classes.names.insert(classes.names.end(), {model.name, ""});
-        fewest = std::min(fewest, parameters);
-        most = std::max(most, parameters);
+        if (std::isfinite(model.judgedDb())) {
+            classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
+            classes.y.insert(classes.y.end(), {model.judgedDb(), std::numeric_limits<double>::quiet_NaN()});
+            classes.names.insert(classes.names.end(), {model.name, ""});
+            fewest = std::min(fewest, parameters);
+            most = std::max(most, parameters);
+        } else
+            troubles.push_back(model.name + ": it runs away on records that it is judged by, and is not drawn.");
         rows.push_back({model.name, Page::figure(fixedText(parameters, 0)),
                         Page::figure(decibelsCell(model.estimationDb)), Page::figure(decibelsCell(model.validationDb)),
                         Page::figure(fixedText(100.0 * model.load, 2) + " %"), model.stable ? "yes" : "no",
                         model.description});
     }
     plot.series.push_back(std::move(classes));
-    if (ranking.noiseDb && !rows.empty())
+    const bool drawn = fewest <= most;
+    if (ranking.noiseDb && drawn)
         plot.series.push_back({"noise",
                                Role::noise,
                                {fewest, most},
@@ -98,7 +99,7 @@ void addRankingOfClasses(Page& page, const Ranking& ranking)
     page.table({"class", "parameters", "estimation dB", "validation dB", "load", "stable", "what it is"}, rows);
     for (const auto& trouble : troubles)
         page.note(trouble);
-    if (!rows.empty())
+    if (drawn)
         page.figures({plot}, 1,
                      "Errors are those of simulations, relative to the output. The load is the time that one core "
                      "simulates for.");

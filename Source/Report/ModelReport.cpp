@@ -170,8 +170,14 @@ void addPnlssFit(Page& page, const JsonField& document)
     const bool validated = std::isfinite(fit.validationDb);
     page.headline("Polynomial state space: " + decibelsCell(fit.estimationDb) + " dB on what it was fitted to"
                       + (validated ? ", " + decibelsCell(fit.validationDb) + " dB on what it had not seen" : "")
-                      + (fit.stable ? "" : "; its linear part is not stable"),
-                  fit.stable ? "good" : "bad");
+                      + (fit.stable ? "" : "; its linear part is not stable")
+                      + (fit.arrived ? (*fit.arrived ? "" : "; the fit did not arrive at the noise")
+                                     : "; it is not known whether that is the noise"),
+                  !fit.stable                   ? "bad"
+                  : fit.arrived.value_or(false) ? "good"
+                                                : "warn");
+    if (!fit.advice.empty())
+        page.paragraph(fit.advice);
     if (fit.laws)
         page.paragraph(fit.laws->sentence);
     if (fit.history.size() > 1) {

@@ -9,6 +9,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -115,4 +117,48 @@ TEST_CASE("What identify, pnlss and rank found reads back from its document")
     auto elsewhere = samples.sweep;
     elsewhere["chosen"] = 7;
     CHECK_THROWS_AS(identificationFromJson(JsonField(elsewhere, "", "test.json")), Error);
+}
+
+TEST_CASE("A class that ran away on what it had not seen is not drawn, and a fit that did not arrive is no good news")
+{
+    RankedModel sound;
+    sound.name = "linear";
+    sound.parameters = 7;
+    sound.estimationDb = sound.validationDb = -30.0;
+    sound.stable = true;
+    auto lost = sound;
+    lost.name = "narx";
+    lost.estimationDb = -90.0;
+    lost.validationDb = std::numeric_limits<double>::infinity();
+    lost.stable = false;
+    Ranking ranking;
+    ranking.models = {sound, lost};
+    ranking.sentence = "s";
+    const nlohmann::json document(toJson(ranking));
+    const auto read = rankingFromJson(JsonField(document, "", "the ranking"));
+    CHECK(std::isinf(read.models[1].validationDb));
+    CHECK(read.models[0].validationDb == -30.0);
+    const auto page = documentHtml(JsonField(document, "", "the ranking"));
+    CHECK(page.find("narx: it runs away on records that it is judged by, and is not drawn.") != std::string::npos);
+    CHECK(page.find("linear: it runs away") == std::string::npos);
+
+    PolynomialFit fit;
+    fit.estimationDb = -20.0;
+    fit.stable = true;
+    fit.stopped = "the error no longer falls";
+    fit.arrived = false;
+    fit.advice = "Try a higher --order.";
+    fit.model = {{"format", "excursion-block-model"}};
+    const auto missed = [&fit] {
+        const nlohmann::json told(toJson(fit));
+        return documentHtml(JsonField(told, "", "the fit"));
+    };
+    CHECK(missed().find("the fit did not arrive at the noise") != std::string::npos);
+    CHECK(missed().find("Try a higher --order.") != std::string::npos);
+    fit.arrived.reset();
+    CHECK(missed().find("it is not known whether that is the noise") != std::string::npos);
+    fit.arrived = true;
+    fit.advice.clear();
+    CHECK(missed().find("arrive at the noise") == std::string::npos);
+    CHECK(missed().find("not known whether") == std::string::npos);
 }

@@ -4,6 +4,7 @@
 #include "Engine/Document/DocumentFormat.h"
 #include "Engine/Document/JsonText.h"
 
+#include <cmath>
 #include <limits>
 
 namespace excursion {
@@ -65,6 +66,8 @@ Json json(const RankedModel& model)
     object["parameters"] = model.parameters;
     object["estimationDb"] = numberOrNull(model.estimationDb);
     object["validationDb"] = numberOrNull(model.validationDb);
+    if (std::isinf(model.validationDb))  // null as well where there are no such records
+        object["ranAway"] = true;
     object["load"] = model.load;
     object["fitSeconds"] = model.fitSeconds;
     object["stable"] = model.stable;
@@ -85,7 +88,8 @@ RankedModel modelIn(const JsonField& object)
     model.description = object.at("description").text();
     model.parameters = object.at("parameters").count(0, std::numeric_limits<int>::max());
     model.estimationDb = decibelsIn(object.at("estimationDb"));
-    model.validationDb = object.at("validationDb").numberOrNaN();
+    model.validationDb = object.has("ranAway") && object.at("ranAway").flag() ? std::numeric_limits<double>::infinity()
+                                                                              : object.at("validationDb").numberOrNaN();
     model.load = object.at("load").number();
     model.fitSeconds = object.at("fitSeconds").number();
     model.stable = object.at("stable").flag();
