@@ -8,7 +8,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 using namespace excursion;
 
@@ -207,6 +210,64 @@ TEST_CASE("Bypass is bit by bit the signal as it was, whatever is moved meanwhil
         chain.process(u.data() + n, out.data() + n, 480);
     }
     CHECK(std::equal(u.begin(), u.end() - chain.latency(), out.begin() + chain.latency()));
+}
+
+TEST_CASE("Bypass keeps a zero's sign and the faintest samples", "[chain]")
+{
+    Chain chain(everything(), {48000.0, 2}, controls(Mode::bypass));
+    const std::vector<double> faint {-0.0, 1e-31, -1e-31, 1e-40, -3e-45, 0.0};
+    std::vector<double> u;
+    for (int n = 0; n < 2000; ++n)
+        u.push_back(faint[static_cast<std::size_t>(n) % faint.size()]);
+    auto out = u;
+    chain.process(u.data(), out.data(), u.size());
+    const auto late = static_cast<std::size_t>(chain.latency());
+    for (std::size_t n = late; n < u.size(); ++n) {
+        INFO(n);
+        REQUIRE(out[n] == u[n - late]);
+        REQUIRE(std::signbit(out[n]) == std::signbit(u[n - late]));
+    }
+}
+
+TEST_CASE("The meters fall to nothing in bypass", "[chain]")
+{
+    const auto u = noise(48000, 0.5);
+    auto out = u;
+    Chain chain(everything(), {48000.0, 2}, controls(Mode::linearize));
+    chain.process(u.data(), out.data(), u.size());
+    REQUIRE(chain.collectMeters().predistorter.power > 0.0);
+    chain.set(controls(Mode::bypass));
+    chain.process(u.data(), out.data(), u.size());  // fades
+    chain.collectMeters();
+    chain.process(u.data(), out.data(), u.size());
+    const auto meters = chain.collectMeters();
+    CHECK(meters.predistorter.power == 0.0);
+    CHECK(meters.predistorter.voltage == 0.0);
+    CHECK(meters.predistorter.displacement == 0.0);
+}
+
+TEST_CASE("No sample is above full scale while the volts at full scale and the limit fall with it", "[chain]")
+{
+    for (const double frequency : {25.0, 40.0}) {
+        INFO(frequency << " Hz");
+        auto some = controls(Mode::linearize);
+        some.fullScale = some.predistortion.voltageLimit = 20.0;
+        some.predistortion.target = {Target::Kind::resonance, 25.0, 0.7, 0.02};  // asks for more volts than come in
+        Chain chain(everything(), {48000.0, 2}, some);
+        std::vector<double> u(48000);
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / 48000.0);
+        double loudest = 0.0;
+        for (std::size_t n = 0; n < u.size(); n += 480) {
+            some.fullScale = some.predistortion.voltageLimit = n < 24000 ? 20.0 : 5.0;
+            chain.set(some);
+            chain.process(u.data() + n, u.data() + n, 480);
+            for (std::size_t k = n; k < n + 480; ++k)
+                loudest = std::max(loudest, std::abs(u[k]));
+        }
+        CHECK(loudest <= 1.0);
+        CHECK(loudest > 0.9);
+    }
 }
 
 TEST_CASE("From the sample at which it is switched on nothing passes the limit of the voltage", "[chain]")

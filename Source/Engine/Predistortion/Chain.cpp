@@ -144,8 +144,10 @@ Chain::Passing Chain::delayed(Passing passing)
 void Chain::process(const double* in, double* out, std::size_t n)
 {
     const FlushSubnormals flush;
+    bool ran = false;
     while (n > 0) {
         const bool runs = wet_.runs();
+        ran = ran || runs;
         const std::size_t taken = std::min(n, engine_->room());
         std::array<Passing, ChainEngine::longestPart> passing;
         for (std::size_t k = 0; k < taken; ++k) {
@@ -176,13 +178,17 @@ void Chain::process(const double* in, double* out, std::size_t n)
             // The engine keeps to the limit; what still comes behind it may not.
             if (runs && strict_ && (then.trimAfter != 1.0 || soundFades))
                 made = std::clamp(made, -limit_ / unit, limit_ / unit);
-            out[k] = withoutSubnormals(weight == 0.0 ? plain : plain + weight * (made - plain));
+            // While the volts at full scale fall, the engine's limit comes after them.
+            if (runs && strict_ && limit_ <= fullScale_.target())
+                made = std::clamp(made, -1.0, 1.0);
+            out[k] = weight == 0.0 ? plain : withoutSubnormals(plain + weight * (made - plain));
         }
         in += taken;
         out += taken;
         n -= taken;
     }
-    engine_->publish();
+    if (ran)  // what rests has nothing to tell, and would tell what it did last again and again
+        engine_->publish();
 }
 
 Chain::Meters Chain::collectMeters()
