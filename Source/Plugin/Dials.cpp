@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Dials.h"
 
+#include "Plugin/Text.h"
+
 #include <cmath>
 
 namespace excursion::plugin {
@@ -31,6 +33,8 @@ Dial::Dial(SliderStyle style, TextEntryBoxPosition place) : Slider(style, place)
     setWantsKeyboardFocus(true);
     setFocusContainerType(FocusContainerType::keyboardFocusContainer);  // Tab goes past its box, which Return opens
     setMouseClickGrabsKeyboardFocus(true);
+    // Of what is no number a slider of its own accord takes the part before the comma.
+    valueFromTextFunction = [this](const juce::String& text) { return numberIn(text).value_or(getValue()); };
 }
 
 bool Dial::keyPressed(const juce::KeyPress& key)
@@ -84,7 +88,9 @@ NumberDial::NumberDial(Number& number, History* history) : number_(number), hist
                                   [&number](double, double, double proportion) { return number.at(proportion); },
                                   [&number](double, double, double value) { return number.proportionOf(value); }});
     slider_.textFromValueFunction = [&number](double value) { return number.words(value); };
-    slider_.valueFromTextFunction = [&number](const juce::String& text) { return number.valueOf(text); };
+    slider_.valueFromTextFunction = [this](const juce::String& text) {
+        return number_.valueOf(text).value_or(slider_.getValue());
+    };
     slider_.setDoubleClickReturnValue(true, number.first());
     slider_.setTitle(number.getName(80));
     slider_.setDescription("From " + number.words(scale.range.least) + " to " + number.words(scale.range.most));
@@ -113,6 +119,15 @@ void NumberDial::moved()
         remember(before);
     }
     follow();
+}
+
+void NumberDial::enter(double value)
+{
+    const double before = number_.get();
+    if (before == value)
+        return;
+    put(value);
+    remember(before);
 }
 
 /// As one gesture of its own.

@@ -26,6 +26,7 @@ public:
     explicit NumberDial(Number&, History* = nullptr);
 
     juce::Slider& slider() { return slider_; }
+    void enter(double value);  ///< as if a person had, between the steps of the dial too
     void follow();
 
 private:

@@ -48,7 +48,7 @@ LinearizePage::LinearizePage(Window& window)
             const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
             const auto recipe = recipeFromText(factory.text, factory.title);
             const auto put = [this](const Recipe& which, const Between& between) {
-                processor_.parameters().set(which, between);
+                processor_.parameters().choose(which, between);
                 follow();
             };
             auto& parameters = processor_.parameters();

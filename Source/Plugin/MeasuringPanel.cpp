@@ -5,6 +5,7 @@
 #include "Engine/Import/ChannelMap.h"
 #include "Plots/Words.h"
 #include "Plugin/Look.h"
+#include "Plugin/Text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +20,11 @@ constexpr int period = 16384, settlePeriods = 1, periods = 3, realizations = 3;
 /// A positive number out of a text field.
 double entered(const juce::String& field, const char* what)
 {
-    const auto text = field.trim();
-    const double value = text.getDoubleValue();
-    if (!text.containsOnly("0123456789.eE-+") || !(value > 0.0) || !std::isfinite(value))
-        throw Error(Error::Kind::usage,
-                    std::string("\"") + text.toStdString() + "\" is no " + what + ": enter a number above zero.");
-    return value;
+    const auto value = numberIn(field);
+    if (!value || !(*value > 0.0))
+        throw Error(Error::Kind::usage, std::string("\"") + field.trim().toStdString() + "\" is no " + what
+                                            + ": enter a number above zero.");
+    return *value;
 }
 
 /// Where a device's channel stands among those that are open, which alone are recorded and played.

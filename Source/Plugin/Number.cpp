@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Number.h"
 
+#include "Plugin/Text.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +20,17 @@ Number::Number(const juce::String& id, const juce::String& title, const Scale& s
 
 void Number::set(double value)
 {
-    value_.store(std::clamp(value, scale_.range.least, scale_.range.most), std::memory_order_relaxed);
-    sendValueChangedMessageToListeners(getValue());
+    store(value);
+    tell();
 }
+
+void Number::store(double value) noexcept
+{
+    if (std::isfinite(value))  // the clamp would let it through
+        value_.store(std::clamp(value, scale_.range.least, scale_.range.most), std::memory_order_relaxed);
+}
+
+void Number::tell() { sendValueChangedMessageToListeners(getValue()); }
 
 double Number::at(double proportion) const noexcept
 {
@@ -64,13 +74,16 @@ juce::String Number::words(double value) const
     return isWord || !*scale_.unit ? number : number + " " + scale_.unit;
 }
 
-double Number::valueOf(const juce::String& text) const
+std::optional<double> Number::valueOf(const juce::String& text) const
 {
-    if (*scale_.most && text.trim() == scale_.most)
+    const auto entered = text.trim();
+    if (*scale_.most && entered.equalsIgnoreCase(scale_.most))
         return scale_.range.most;
-    if (*scale_.least && text.trim() == scale_.least)
+    if (*scale_.least && entered.equalsIgnoreCase(scale_.least))
         return scale_.range.least;
-    return text.getDoubleValue() / scale_.shown;
+    const bool hasUnit = *scale_.unit && entered.endsWithIgnoreCase(scale_.unit);
+    const auto number = numberIn(hasUnit ? entered.dropLastCharacters(juce::String(scale_.unit).length()) : entered);
+    return number ? std::optional(*number / scale_.shown) : std::nullopt;
 }
 
 juce::String Number::getText(float proportion, int longest) const
@@ -81,7 +94,7 @@ juce::String Number::getText(float proportion, int longest) const
 
 float Number::getValueForText(const juce::String& text) const
 {
-    return static_cast<float>(proportionOf(valueOf(text)));
+    return static_cast<float>(proportionOf(valueOf(text).value_or(get())));
 }
 
 }  // namespace excursion::plugin

@@ -5,6 +5,7 @@
 #include "Plugin/Stepped.h"
 
 #include <atomic>
+#include <optional>
 
 namespace excursion::plugin {
 
@@ -25,8 +26,10 @@ public:
 
     double get() const noexcept { return value_.load(std::memory_order_relaxed); }
     double first() const noexcept { return default_; }
-    /// Within the range; tells the host. Not for the audio thread.
+    /// Within the range; tells the host. What is not finite changes nothing. Not for the audio thread.
     void set(double value);
+    void store(double value) noexcept;  ///< the same, and tells nobody
+    void tell();                        ///< the host, what it is; not for the audio thread
 
     const Scale& scale() const noexcept { return scale_; }
     double at(double proportion) const noexcept;  ///< 0 to 1
@@ -34,7 +37,8 @@ public:
     double snapped(double value) const noexcept;  ///< on the next step
     juce::String text(double value) const;        ///< to the decimals of a step, or the word for an end
     juce::String words(double value) const;       ///< the same with its unit
-    double valueOf(const juce::String& text) const;
+    /// With or without its unit, or the word for an end. Nothing where it is neither.
+    std::optional<double> valueOf(const juce::String& text) const;
 
     float getValue() const override { return static_cast<float>(proportionOf(get())); }
     void setValue(float sent) override;

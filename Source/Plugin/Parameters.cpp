@@ -113,11 +113,11 @@ std::uint64_t Parameters::switches() const
 
 Recipe Parameters::recipe() const
 {
+    const std::lock_guard lock(mutex_);  // a whole one, not part of one that is being set
     Recipe recipe {settings(), {}, {}, {}};
     for (std::size_t k = 0; k < effects_.size(); ++k)
         if (!effects_[k]->get())
             recipe.off.push_back(catalogue()[k]->id());
-    const std::lock_guard lock(mutex_);
     recipe.title = title_;
     recipe.words = words_;
     return recipe;
@@ -137,26 +137,21 @@ Between Parameters::between() const
     return found;
 }
 
-/// While it lives a recipe is being set.
+/// While it lives a recipe is being set. Nobody is called meanwhile: who is called may ask for the recipe, or set
+/// another.
 class Parameters::Setting {
 public:
-    explicit Setting(Parameters& parameters) : alone_(parameters.setting_), parameters_(parameters)
+    explicit Setting(Parameters& parameters) : alone_(parameters.mutex_), parameters_(parameters)
     {
-        if (parameters_.depth_++ > 0)
-            return;
         parameters_.beginsAndEnds_.fetch_add(1, std::memory_order_relaxed);
         std::atomic_thread_fence(std::memory_order_release);
     }
     Setting(const Setting&) = delete;
     Setting& operator=(const Setting&) = delete;
-    ~Setting()
-    {
-        if (--parameters_.depth_ == 0)
-            parameters_.beginsAndEnds_.fetch_add(1, std::memory_order_release);
-    }
+    ~Setting() { parameters_.beginsAndEnds_.fetch_add(1, std::memory_order_release); }
 
 private:
-    std::lock_guard<std::recursive_mutex> alone_;
+    std::lock_guard<std::mutex> alone_;
     Parameters& parameters_;
 };
 
@@ -172,39 +167,71 @@ void Parameters::setCurve(const ThirdOctaves& curve)
     storeCurve(curve);
 }
 
-void Parameters::set(const Recipe& recipe, const Between& between)
+void Parameters::store(const Recipe& recipe, const Between& between)
 {
+    const Setting setting(*this);
     // The recipe has the word: a number that stands for anything else is none.
     const auto put = [&between](Stepped& parameter, float step) {
         const auto found = between.find(parameter.paramID.toStdString());
         const float sent = found != between.end() ? static_cast<float>(found->second) : step;
-        parameter.set(parameter.step(sent) == step ? sent : step);
+        parameter.setValue(parameter.step(sent) == step ? sent : step);
     };
-    {
-        const std::lock_guard lock(mutex_);
-        title_ = recipe.title;
-        words_ = recipe.words;
-    }
-    const Setting setting(*this);
     put(*mode_, mode_->proportionOf(static_cast<int>(recipe.mode)));
-    fullScale_->set(recipe.fullScale);
-    amount_->set(recipe.amount);
-    displacementLimit_->set(recipe.displacementLimit);
-    voltageLimit_->set(recipe.voltageLimit);
-    powerLimit_->set(recipe.powerLimit);
-    margin_->set(recipe.margin);
-    coilResistance_->set(recipe.coilResistance);
-    trim_->set(recipe.trimDb);
+    fullScale_->store(recipe.fullScale);
+    amount_->store(recipe.amount);
+    displacementLimit_->store(recipe.displacementLimit);
+    voltageLimit_->store(recipe.voltageLimit);
+    powerLimit_->store(recipe.powerLimit);
+    margin_->store(recipe.margin);
+    coilResistance_->store(recipe.coilResistance);
+    trim_->store(recipe.trimDb);
     put(*target_, target_->proportionOf(static_cast<int>(recipe.target.kind)));
-    targetF0_->set(recipe.target.frequency);
-    targetQ_->set(recipe.target.quality);
-    targetVolume_->set(recipe.target.volume);
-    targetLow_->set(recipe.target.low);
-    targetHigh_->set(recipe.target.high);
+    targetF0_->store(recipe.target.frequency);
+    targetQ_->store(recipe.target.quality);
+    targetVolume_->store(recipe.target.volume);
+    targetLow_->store(recipe.target.low);
+    targetHigh_->store(recipe.target.high);
     storeCurve(recipe.target.curve);
     for (std::size_t k = 0; k < effects_.size(); ++k)
         put(*effects_[k],
             std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);
+    title_ = recipe.title;
+    words_ = recipe.words;
+}
+
+/// Calls with each parameter.
+template <class Visit>
+void Parameters::visit(const Visit& each) const
+{
+    each(*mode_);
+    for (auto* number : numbers())
+        each(*number);
+    each(*target_);
+    for (auto* number : targetNumbers())
+        each(*number);
+    for (auto* effect : effects_)
+        each(*effect);
+}
+
+void Parameters::set(const Recipe& recipe, const Between& between)
+{
+    store(recipe, between);
+    visit([](auto& parameter) { parameter.tell(); });
+}
+
+void Parameters::choose(const Recipe& recipe, const Between& between)
+{
+    std::vector<float> before;
+    visit([&](auto& parameter) { before.push_back(parameter.getValue()); });
+    store(recipe, between);
+    auto value = before.begin();
+    visit([&](auto& parameter) {
+        if (parameter.getValue() == *value++)
+            return;
+        parameter.beginChangeGesture();
+        parameter.tell();
+        parameter.endChangeGesture();
+    });
 }
 
 }  // namespace excursion::plugin

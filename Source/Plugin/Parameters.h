@@ -29,8 +29,10 @@ public:
     explicit Parameters(juce::AudioProcessor&);
 
     Recipe recipe() const;  ///< title and words are of the one that was set last; not for the audio thread
-    /// A valid one; tells the host; not for the audio thread.
+    /// A valid one, whole before anybody is called; tells the host; not for the audio thread.
     void set(const Recipe&, const Between& = {});
+    /// The same for a person: each parameter that changes is told as a gesture, which a host records, and no other.
+    void choose(const Recipe&, const Between& = {});
     void setCurve(const ThirdOctaves&);  ///< of a target, and nothing else; not for the audio thread
 
     /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see
@@ -57,6 +59,9 @@ public:
 
 private:
     class Setting;
+    void store(const Recipe&, const Between&);
+    template <class Visit>
+    void visit(const Visit&) const;
     void storeCurve(const ThirdOctaves&);
 
     Choice *mode_, *target_;
@@ -64,10 +69,9 @@ private:
     Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};
-    std::recursive_mutex setting_;             ///< one recipe at a time; a host may come back in its callback
-    int depth_ = 0;                            ///< of such callbacks
     std::atomic<unsigned> beginsAndEnds_ {0};  ///< of recipes that were set; odd while one is
-    mutable std::mutex mutex_;                 ///< of what follows; never locked on the audio thread
+    /// of what follows, and of a recipe as a whole; nothing is called while it is held, and no other is locked
+    mutable std::mutex mutex_;
     std::string title_, words_;
 };
 

@@ -8,8 +8,10 @@ namespace excursion::plugin {
 void Stepped::set(float proportion)
 {
     setValue(proportion);
-    sendValueChangedMessageToListeners(getValue());
+    tell();
 }
+
+void Stepped::tell() { sendValueChangedMessageToListeners(getValue()); }
 
 void Stepped::setValue(float sent)
 {

@@ -20,6 +20,7 @@ public:
 
     virtual float step(float proportion) const = 0;  ///< what a number stands for
     void set(float proportion);                      ///< tells the host; not for the audio thread
+    void tell();                                     ///< the host, what it is at; not for the audio thread
 
     float getValue() const final { return sent_.load(std::memory_order_relaxed); }
     void setValue(float sent) final;

@@ -3,8 +3,10 @@
 
 #include "Plugin/Juce.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,6 +34,23 @@ inline juce::String typeset(std::string_view text)
             result += text[k];
     }
     return words(result);
+}
+
+/// The finite number that a text is, with a decimal point, and nothing where the text is anything else: "0,5", "1.2.3"
+/// and "nan" are none, of which a more lenient reader would take a part.
+inline std::optional<double> numberIn(const juce::String& text)
+{
+    auto digits = text.trim();
+    if (digits.startsWithChar('+'))
+        digits = digits.substring(1);
+    if (!digits.containsOnly("0123456789.eE+-") || digits.startsWithChar('+'))
+        return std::nullopt;
+    const auto bytes = digits.toStdString();
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(bytes.data(), bytes.data() + bytes.size(), value);
+    if (error != std::errc() || end != bytes.data() + bytes.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
 }
 
 /// A whole number; juce::String(value, 0) would write all decimals that there are.

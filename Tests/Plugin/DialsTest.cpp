@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <limits>
+#include <vector>
+
 using namespace excursion;
 using plugin::Processor;
 
@@ -59,6 +62,48 @@ TEST_CASE("A dial puts a number on the nearest step and tells the host of one ge
     percent.slider().setValue(percent.slider().getValueFromText("33.3 %"), juce::sendNotificationSync);
     CHECK(share.get() == 0.333);
     CHECK(percent.slider().getTextFromValue(share.get()) == "33.3 %");
+}
+
+TEST_CASE("What is typed into a dial and is no number leaves it as it is", "[plugin]")
+{
+    Processor processor;
+    auto& parameters = processor.parameters();
+    std::vector<plugin::Number*> numbers = parameters.numbers();
+    for (auto* number : parameters.targetNumbers())
+        numbers.push_back(number);
+    for (auto* number : numbers) {
+        INFO(number->getName(40));
+        plugin::NumberDial dial(*number);
+        auto& slider = dial.slider();
+        const double before = number->snapped(number->at(0.4));
+        number->set(before);
+        dial.follow();
+        const float proportion = number->getValue();
+        for (const auto* typed : {"0,5", "", "-", "1.2.3", "1-2", "e5", "1e999", "nan", "inf", "none", "off",
+                                  "5 apples", "V", "No limit at all"}) {
+            INFO('"' << typed << '"');
+            slider.setValue(slider.getValueFromText(typed), juce::sendNotificationSync);
+            CHECK(number->get() == before);
+            CHECK(number->getValueForText(typed) == proportion);
+        }
+        for (const double wild : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                                  -std::numeric_limits<double>::infinity()}) {
+            number->set(wild);
+            CHECK(number->get() == before);
+        }
+        const auto& scale = number->scale();
+        if (*scale.most)
+            CHECK(number->valueOf(juce::String(scale.most).toUpperCase()) == scale.range.most);
+        if (*scale.least)
+            CHECK(number->valueOf(" " + juce::String(scale.least).toUpperCase()) == scale.range.least);
+        for (const auto& typed : {number->words(before), number->text(before), "+" + number->text(before)})
+            CHECK(number->valueOf(typed).value() == Approx(before));
+    }
+    plugin::Dial plain(juce::Slider::LinearHorizontal, juce::Slider::TextBoxRight);
+    plain.setRange(0.2, 1.2, 0.01);
+    plain.setValue(0.9, juce::dontSendNotification);
+    CHECK(plain.getValueFromText("0,5") == Approx(0.9));
+    CHECK(plain.getValueFromText("0.5") == 0.5);
 }
 
 TEST_CASE("An end of a dial that is no number is called by its word", "[plugin]")

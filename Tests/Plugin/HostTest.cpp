@@ -3,6 +3,7 @@
 #include "Played.h"
 
 #include "Plugin/Editor.h"
+#include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
 
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <thread>
 
@@ -232,10 +234,63 @@ TEST_CASE("A recipe takes effect as a whole", "[plugin]")
     host.moved = {};
     processor.removeListener(&host);
     CHECK(!meanwhile.empty());
-    CHECK(loudest(meanwhile) == Approx(0.9f).epsilon(1e-3));  // as it was: bypassed
-    const auto out = heard(processor, u);
     const auto latency = processor.getLatencySamples();
+    // All of it is there before the host is told of any part.
+    CHECK(40.0f * loudest({meanwhile.begin() + latency, meanwhile.end()}) < 2.001f);
+    const auto out = heard(processor, u);
     CHECK(40.0f * loudest({out.begin() + latency, out.end()}) < 2.001f);
+}
+
+TEST_CASE("A recipe that a person chooses is a gesture for each parameter that it changes, a state is none", "[plugin]")
+{
+    // b, c and e of each parameter: a gesture begins, the value changes, the gesture ends
+    struct Gestures : juce::AudioProcessorListener {
+        explicit Gestures(Processor& of) : processor(of) { processor.addListener(this); }
+        ~Gestures() override { processor.removeListener(this); }
+        void audioProcessorParameterChanged(juce::AudioProcessor*, int index, float) override { heard[index] += "c"; }
+        void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails&) override {}
+        void audioProcessorParameterChangeGestureBegin(juce::AudioProcessor*, int index) override
+        {
+            heard[index] += "b";
+        }
+        void audioProcessorParameterChangeGestureEnd(juce::AudioProcessor*, int index) override { heard[index] += "e"; }
+        Processor& processor;
+        std::map<int, std::string> heard;
+    };
+    Processor processor;
+    Editor editor(processor);
+    editor.go(plugin::PageName::linearize);
+    editor.update();
+    const auto values = [&] {
+        std::vector<float> all;
+        for (auto* parameter : processor.getParameters())
+            all.push_back(parameter->getValue());
+        return all;
+    };
+    const auto asGestures = [&](const std::function<void()>& act) {
+        Gestures gestures(processor);
+        const auto before = values();
+        act();
+        const auto now = values();
+        CHECK(before != now);
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            INFO(processor.getParameters()[static_cast<int>(k)]->getName(40));
+            CHECK(gestures.heard[static_cast<int>(k)] == (now[k] != before[k] ? "bce" : ""));
+        }
+    };
+    const auto fresh = stateOf(processor);
+    for (auto* list : plugin::all<juce::ComboBox>(editor.page(plugin::PageName::linearize)))
+        if (list->getTitle() == "Recipes")
+            asGestures([&] { list->setSelectedItemIndex(1, juce::sendNotificationSync); });
+    asGestures([&] { editor.undo(); });
+    asGestures([&] { editor.redo(); });
+    Gestures gestures(processor);
+    processor.setStateInformation(fresh.getData(), static_cast<int>(fresh.getSize()));
+    CHECK((stateOf(processor) == fresh));
+    for (const auto& [index, heard] : gestures.heard) {
+        INFO(processor.getParameters()[index]->getName(40));
+        CHECK(heard.find_first_of("be") == std::string::npos);
+    }
 }
 
 TEST_CASE("A host is told that there is something to save that no parameter shows", "[plugin]")

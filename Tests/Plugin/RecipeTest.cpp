@@ -6,9 +6,13 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string>
+#include <thread>
+#include <vector>
 
 using namespace excursion;
 using plugin::Processor;
@@ -135,6 +139,59 @@ TEST_CASE("The plugin's controls are those of its recipe, and no limit of the vo
         CHECK(controls.predistortion.isValid(nullptr));
     }
     CHECK(controlsOf(Recipe {}, model).powerLimit == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("A recipe that is set while a host is told of another replaces it as a whole", "[plugin]")
+{
+    std::mt19937 random(4);
+    auto first = drawn(random), second = drawn(random);
+    first.title = "first";
+    second.title = "second";
+    first.off = {"creep"};
+    second.off = {"stiffness", "friction"};
+    Processor processor;
+    struct Host : juce::AudioProcessorListener {
+        void audioProcessorParameterChanged(juce::AudioProcessor*, int, float) override { told(); }
+        void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails&) override {}
+        std::function<void()> told;
+    } host;
+    std::vector<std::string> seen;
+    int calls = 0;
+    host.told = [&] {
+        seen.push_back(toJson(processor.parameters().recipe()).dump());
+        if (++calls == 5)
+            processor.parameters().set(second);
+    };
+    processor.addListener(&host);
+    processor.parameters().set(first);
+    processor.removeListener(&host);
+    const auto one = toJson(first).dump(), other = toJson(second).dump();
+    CHECK(toJson(processor.parameters().recipe()).dump() == other);
+    for (const auto& recipe : seen)
+        CHECK((recipe == one || recipe == other));
+}
+
+TEST_CASE("Who asks for the recipe while another thread sets one gets a whole one", "[plugin]")
+{
+    std::mt19937 random(5);
+    auto first = drawn(random), second = drawn(random);
+    first.title = "first";
+    second.title = "second";
+    first.off = {"creep"};
+    second.off = {"stiffness", "friction"};
+    const auto one = toJson(first).dump(), other = toJson(second).dump();
+    Processor processor;
+    processor.parameters().set(first);
+    std::jthread setting([&](const std::stop_token& stop) {
+        for (int k = 0; !stop.stop_requested(); ++k)
+            processor.parameters().set(k % 2 == 0 ? second : first);
+    });
+    int mixed = 0;
+    for (int k = 0; k < 3000; ++k) {
+        const auto seen = toJson(processor.parameters().recipe()).dump();
+        mixed += seen == one || seen == other ? 0 : 1;
+    }
+    CHECK(mixed == 0);
 }
 
 TEST_CASE("As the plugin is when it is just turned on, no sample leaves it that a converter could not give", "[plugin]")
