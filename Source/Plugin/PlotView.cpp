@@ -350,18 +350,30 @@ void PlotView::choose(const juce::String& ending)
     chooser_ = std::make_unique<juce::FileChooser>("Save the plot", first, "*." + ending);
     chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
                           [this, ending](const juce::FileChooser& chosen) {
-                              if (chosen.getResult() == juce::File())
-                                  return;
-                              const auto file = chosen.getResult().withFileExtension(ending);
-                              try {
-                                  save(file);
-                                  if (told)
-                                      told("Wrote " + file.getFullPathName() + ".", false);
-                              } catch (const Error& error) {
-                                  if (told)
-                                      told(words(error.what()), true);
-                              }
+                              if (chosen.getResult() != juce::File())
+                                  saveAs(chosen.getResult(), ending);
                           });
+}
+
+void PlotView::saveAs(const juce::File& chosen, const juce::String& ending) const
+{
+    const auto file = chosen.withFileExtension(ending);
+    const auto tell = [this](const juce::String& text, bool trouble) {
+        if (told)
+            told(text, trouble);
+    };
+    // The dialog has asked about the name that was chosen, not about the one with the ending.
+    if (file != chosen && file.exists()) {
+        tell("\"" + file.getFileName() + "\" is there already: choose another name, or this one with its ending.",
+             true);
+        return;
+    }
+    try {
+        save(file);
+        tell("Wrote " + file.getFullPathName() + ".", false);
+    } catch (const Error& error) {
+        tell(words(error.what()), true);
+    }
 }
 
 void PlotView::save(const juce::File& file) const

@@ -31,6 +31,8 @@ public:
     /// Writes what is seen, by the file's ending: .png, .svg or .csv. Throws Error (input) when the file cannot be
     /// written, (usage) for another ending, (numerical) when gnuplot is missing, which draws the SVG.
     void save(const juce::File&) const;
+    /// As if the file dialog had been given that name: the ending is added, and told() says what came of it.
+    void saveAs(const juce::File&, const juce::String& ending) const;
     /// What is read at the mouse or the cursor, a line each: the place, then a line a series. Empty: nothing.
     juce::StringArray reading() const;
     void putCursor(double x);  ///< as if the mouse were there

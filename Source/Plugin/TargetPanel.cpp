@@ -69,7 +69,7 @@ TargetPanel::TargetPanel(Window& window)
         add(one.title);
         add(one.dial->slider());
     }
-    load_.setTooltip("Lines of frequency in Hz and dB, as in an .frd; or drop the file here");
+    load_.setTooltip("Lines of frequency in Hz and dB, as in an .frd; or drop the .frd, .txt or .csv here");
     load_.onClick = [this] { choose(); };
     add(load_);
     add(words_);
@@ -87,6 +87,12 @@ void TargetPanel::choose()
                           });
 }
 
+/// What it is not interested in the window takes, as a take.
+bool TargetPanel::isInterestedInFileDrag(const juce::StringArray& files)
+{
+    return load_.isVisible() && files.size() == 1 && juce::File(files[0]).hasFileExtension("frd;txt;csv");
+}
+
 void TargetPanel::use(const juce::File& file)
 {
     try {
@@ -101,7 +107,7 @@ void TargetPanel::use(const juce::File& file)
         put(now);
         if (told)
             told("The target follows " + file.getFileName() + ".", false);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {  // no host expects one where a file is dropped
         if (told)
             told(words(error.what()), true);
     }

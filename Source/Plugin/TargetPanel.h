@@ -19,8 +19,9 @@ namespace excursion::plugin {
 
 /// What a linearized loudspeaker is to move or sound like, and what that costs: its own linear part, another resonance,
 /// a closed box, a flat band, or a curve of a file, with response, excursion and voltage before it is used. While the
-/// own linear part is played, the picture shows what the resonance as it is set would do.
-class TargetPanel : public juce::Component {
+/// own linear part is played, the picture shows what the resonance as it is set would do. A curve is taken where it is
+/// dropped, while its button is seen.
+class TargetPanel : public juce::Component, public juce::FileDragAndDropTarget {
 public:
     explicit TargetPanel(Window&);
 
@@ -28,11 +29,14 @@ public:
     bool pictured() const { return picture_.getSelectedItemIndex() == 1; }
     void choosePicture(bool target);  ///< as if a person had
     int head() const;                 ///< px
+    void use(const juce::File&);      ///< a curve; told in the status line where it is none
     std::function<void()> reshaped;   ///< head() or pictured() are others
     std::function<void(const juce::String&, bool trouble)> told;
 
     void tick();
     void resized() override;
+    bool isInterestedInFileDrag(const juce::StringArray&) override;
+    void filesDropped(const juce::StringArray& files, int, int) override { use(juce::File(files[0])); }
 
 private:
     struct Answer {
@@ -44,7 +48,6 @@ private:
     };
     void follow();
     void choose();
-    void use(const juce::File&);
     void ask();
     void show(const Answer&);
 

@@ -109,6 +109,24 @@ TEST_CASE("A plot is read, zoomed and saved", "[plugin]")
     view.save(folder.getChildFile("a.png"));
     const auto image = juce::ImageFileFormat::loadFrom(folder.getChildFile("a.png"));
     CHECK(image.getWidth() >= 800);
+    // What the dialog has not asked about is not written over; what it has is.
+    juce::String said;
+    bool trouble = false;
+    view.told = [&](const juce::String& text, bool bad) {
+        said = text;
+        trouble = bad;
+    };
+    REQUIRE(folder.getChildFile("fig.csv").replaceWithText("mine"));
+    view.saveAs(folder.getChildFile("fig"), "csv");
+    CHECK(trouble);
+    CHECK(said.contains("fig.csv"));
+    CHECK(folder.getChildFile("fig.csv").loadFileAsString() == "mine");
+    view.saveAs(folder.getChildFile("fig.csv"), "csv");
+    CHECK_FALSE(trouble);
+    CHECK(folder.getChildFile("fig.csv").loadFileAsString().startsWith("series,"));
+    view.saveAs(folder.getChildFile("other"), "csv");
+    CHECK_FALSE(trouble);
+    CHECK(folder.getChildFile("other.csv").existsAsFile());
     CHECK_THROWS_AS(view.save(folder.getChildFile("a.doc")), Error);
     CHECK_THROWS_AS(view.save(folder.getChildFile("none").getChildFile("a.csv").getChildFile("b.csv")), Error);
     try {

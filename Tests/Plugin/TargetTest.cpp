@@ -205,3 +205,45 @@ TEST_CASE("A flat band and the response of a file are targets of the last page, 
         CHECK(std::abs(found - truth) < 2e-3 * std::abs(truth));
     }
 }
+
+TEST_CASE("A curve that is loaded or dropped on its button is a step of the history; what is none changes nothing",
+          "[plugin][target]")
+{
+    Processor processor;
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    auto& panel = dynamic_cast<plugin::LinearizePage&>(editor.page(PageName::linearize)).target();
+    const auto folder = juce::File::createTempFile("curves");
+    REQUIRE(folder.createDirectory().wasOk());
+    const auto frd = folder.getChildFile("house.frd"), nonsense = folder.getChildFile("nonsense.frd");
+    REQUIRE(frd.replaceWithText("20 6\n100 3\n1000 0\n20000 -6\n"));
+    REQUIRE(nonsense.replaceWithText("no numbers here\n"));
+    const juce::StringArray dropped {frd.getFullPathName()};
+    // While no button asks for a curve the file is a take, of which the window knows.
+    CHECK_FALSE(panel.isInterestedInFileDrag(dropped));
+    auto target = processor.parameters().recipe().target;
+    target.kind = Target::Kind::bands;
+    put(processor, Mode::bypass, target);
+    editor.update();
+    editor.resized();
+    CHECK(panel.isInterestedInFileDrag(dropped));
+    CHECK_FALSE(panel.isInterestedInFileDrag({folder.getChildFile("model.json").getFullPathName()}));
+    const auto curve = [&] { return processor.parameters().settings().target.curve; };
+    const auto before = curve();
+    panel.filesDropped(dropped, 0, 0);
+    const auto now = curve();
+    CHECK(now != before);
+    CHECK(editor.status().contains("house.frd"));
+    CHECK(editor.history().nextBack() == "Target curve");
+    editor.undo();
+    CHECK(curve() == before);
+    editor.redo();
+    CHECK(curve() == now);
+    editor.undo();
+    REQUIRE_FALSE(editor.history().canUndo());
+    panel.use(nonsense);
+    CHECK(curve() == before);
+    CHECK(editor.status().contains("nonsense.frd"));
+    CHECK_FALSE(editor.history().canUndo());
+    folder.deleteRecursively();
+}
