@@ -39,7 +39,11 @@ Processor::Processor()
       parameters_(*this),
       model_(firstModel()),
       worker_([this](const std::stop_token& stop) { work(stop); }),
-      rehearsing_([this](const LoadedBoxPointer& box, const std::stop_token& stop) { put(box, stop); })
+      rehearsing_([this](const LoadedBoxPointer& box, const std::stop_token& stop) {
+          put(box, stop);
+          tellsState_ = true;  // whether a window is open or not
+          triggerAsyncUpdate();
+      })
 {
     latency_ = Chain(model_, options(), {}).latency();  // the same at every rate
     setLatencySamples(latency_);
@@ -195,7 +199,12 @@ void Processor::tellLatency()
         triggerAsyncUpdate();
 }
 
-void Processor::handleAsyncUpdate() { setLatencySamples(latency_); }
+void Processor::handleAsyncUpdate()
+{
+    setLatencySamples(latency_);
+    if (tellsState_.exchange(false))
+        tellHostOfState();
+}
 
 AnyModel Processor::anyModel() const
 {
@@ -231,6 +240,8 @@ void Processor::prepareToPlay(double sampleRate, int)
     // Whoever prepares asks for it next, whichever thread that is, and may have no message loop.
     cancelPendingUpdate();
     setLatencySamples(latency_);
+    if (tellsState_)  // which was cancelled with it
+        triggerAsyncUpdate();
 }
 
 /// With the mutex held, while no audio runs: chains that play at once, or delays.
@@ -345,17 +356,40 @@ Processor::Meters Processor::collectMeters()
             faults_.load(std::memory_order_relaxed)};
 }
 
+std::string Processor::stateBytes() const { return bytesOf({parameters_.recipe(), anyModel(), parameters_.between()}); }
+
+std::string Processor::refusal() const
+{
+    const std::lock_guard lock(mutex_);
+    return refused_.reason;
+}
+
 void Processor::getStateInformation(juce::MemoryBlock& block)
 {
-    const auto bytes = bytesOf({parameters_.recipe(), anyModel(), parameters_.between()});
+    auto bytes = stateBytes();
+    {
+        // A host saves over what it had: as long as nothing was changed, that is the state that could not be used.
+        const std::lock_guard lock(mutex_);
+        if (bytes == refused_.instead)
+            bytes = refused_.bytes;
+        else
+            refused_ = {};
+    }
     block.replaceAll(bytes.data(), bytes.size());
 }
 
 void Processor::setStateInformation(const void* data, int size)
 {
+    if (data == nullptr || size <= 0)
+        return;
+    const std::string_view bytes(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    const auto refuse = [&](const std::exception& error) {
+        const auto instead = stateBytes();
+        const std::lock_guard lock(mutex_);
+        refused_ = {std::string(bytes), std::string("What was saved is not used: ") + error.what(), instead};
+    };
     try {
-        const auto state = stateFrom({static_cast<const char*>(data), static_cast<std::size_t>(std::max(size, 0))},
-                                     box());
+        const auto state = stateFrom(bytes, box());
         {
             // All of it is used or nothing, so what may be refused is asked first.
             const std::lock_guard lock(mutex_);
@@ -363,8 +397,10 @@ void Processor::setStateInformation(const void* data, int size)
         }
         parameters_.set(state.recipe, state.between);
         setModel(state.model);
-    } catch (const Error&) {
-        // A state that cannot be used is none: what is there stays.
+        const std::lock_guard lock(mutex_);
+        refused_ = {};
+    } catch (const std::exception& error) {
+        refuse(error);  // what is there stays
     }
 }
 

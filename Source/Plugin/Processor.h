@@ -58,6 +58,9 @@ public:
 
     /// Why the signal goes through as it is, in a sentence; empty while the engine runs.
     std::string standstill() const;
+    /// Why the state that a host has given last is not used, in a sentence. Until something is changed, or another
+    /// state given, it is what the host gets back. Empty: it is used.
+    std::string refusal() const;
 
     /// Since the last call, over all channels; see Predistorter::Meters.
     struct Meters {
@@ -117,6 +120,7 @@ private:
     void handleAsyncUpdate() override;
     void work(const std::stop_token&);
     RealTimeOptions options() const;
+    std::string stateBytes() const;
 
     Parameters parameters_;
     /// of what follows; locked on the audio thread in a render alone, where the host's lock of that thread is held:
@@ -129,6 +133,10 @@ private:
     std::atomic<int> latency_ {0};  ///< samples; what the host has been told, or is about to be
     std::uint64_t switches_ = 0;    ///< of the effects, as they were when chains were built
     std::string standstill_;
+    /// A state that could not be used, as it was given, and that of the plugin at that time.
+    struct Refused {
+        std::string bytes, reason, instead;
+    } refused_;
     std::vector<std::unique_ptr<Crossfade<ModelChain>>> channels_;  ///< these two are changed only while no audio runs
     /// in place of the channels, where no chain can run
     std::vector<Delay> delays_;
@@ -140,6 +148,7 @@ private:
     std::array<double, 256> block_ {};
     Peak displacement_, region_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
+    std::atomic<bool> tellsState_ {false};  ///< the host is still to be told of it, on the message thread
     std::condition_variable_any wake_;
     std::jthread worker_;
     Session session_;
