@@ -45,6 +45,15 @@ Plot evidenceOf(const RankedEffect& ranked, const Findings& findings)
     return plots.empty() ? Plot {} : plots.front();
 }
 
+/// The last model, with a name.
+Model namedModel(const Findings& findings)
+{
+    auto model = findings.file.ladder.model();
+    if (model.name.empty())
+        model.name = findings.source;
+    return model;
+}
+
 /// What the last model's effects do to the sound.
 Plot soundOf(const Findings& findings)
 {
@@ -77,27 +86,30 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
     undo_.onClick = [this] { session().undo(); };
     linearize_.onClick = [this] {
         if (findings_ && !findings_->file.ladder.rungs.empty()) {
-            auto model = findings_->file.ladder.model();
-            if (model.name.empty())
-                model.name = findings_->source;
-            window_.linearizeWith(model, words(findings_->source));
+            window_.linearizeWith(namedModel(*findings_), words(findings_->source), findings_->fullScale);
         }
     };
     report_.onClick = [this] {
+        const auto now = session().findings();  // while the dialog is open, another take may come
         chooser_ = std::make_unique<juce::FileChooser>(
             "Save the report",
             juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("report.html"), "*.html");
         chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
-                              [this](const juce::FileChooser& chosen) {
+                              [this, now](const juce::FileChooser& chosen) {
                                   if (chosen.getResult() != juce::File())
-                                      session().saveReport(chosen.getResult().getFullPathName().toStdString());
+                                      session().saveReport(now, chosen.getResult().getFullPathName().toStdString());
                               });
+    };
+    save_.setTooltip("As a file that the last page and the command read");
+    save_.onClick = [this] {
+        if (findings_ && !findings_->file.ladder.rungs.empty())
+            window_.saveModel(namedModel(*findings_));
     };
     reveal_.onClick = [this] {
         truth_.setVisible(true);
         resized();
     };
-    add({&verdict_, &list_, &evidence_, &falls_, &begin_, &undo_, &linearize_, &report_, &reveal_, &truth_});
+    add({&verdict_, &list_, &evidence_, &falls_, &begin_, &undo_, &linearize_, &save_, &report_, &reveal_, &truth_});
     begin_.setVisible(false);
     reveal_.setVisible(false);
     truth_.setVisible(false);
@@ -191,6 +203,7 @@ void DiagnosePage::tick()
         candidate->enable(idle);
     undo_.setEnabled(idle && rungs > 1);
     linearize_.setEnabled(rungs > 0);
+    save_.setEnabled(rungs > 0);
     report_.setEnabled(idle && rungs > 0);
 }
 
@@ -225,9 +238,9 @@ void DiagnosePage::resized()
     auto area = getLocalBounds();
     verdict_.setBounds(area.removeFromTop(58));
     auto foot = area.removeFromBottom(28);
-    const int width = std::min(200, (foot.getWidth() - 3 * 8) / 4);
+    const int width = std::min(200, (foot.getWidth() - 4 * 8) / 5);
     begin_.setBounds(foot.withWidth(width));
-    for (auto* button : {&undo_, &linearize_, &report_, &reveal_}) {
+    for (auto* button : {&undo_, &linearize_, &save_, &report_, &reveal_}) {
         button->setBounds(foot.removeFromLeft(width));
         foot.removeFromLeft(8);
     }

@@ -40,7 +40,8 @@ private:
     PlotView evidence_;
     PlotGrid falls_ {"How the errors fall"};
     juce::TextButton begin_ {"Fit the first model"}, undo_ {"Take the last effect back"},
-        linearize_ {"Linearize with this model"}, report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
+        linearize_ {"Linearize with this model"}, save_ {"Save the model..."}, report_ {"Save the report..."},
+        reveal_ {"Reveal what was hidden"};
     std::unique_ptr<juce::FileChooser> chooser_;
 };
 

@@ -67,7 +67,8 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     progress_.setVisible(false);
     cancel_.setVisible(false);
     addAndMakeVisible(ring_);
-    failedSaves_ = owner_.session().status().failedSaves;  // another window has told them
+    failures_ = owner_.session().status().failures;  // another window has told them
+    rehearsed_ = owner_.rehearsing().status().version;
     tell("Open, draw or measure a loudspeaker; or load a model on the last page.", false);
     go(owner_.session().findings() ? PageName::diagnose : PageName::measure);
     setResizable(true, true);
@@ -126,9 +127,9 @@ void Editor::update()
     progress_.setVisible(busy);
     cancel_.setVisible(busy);
     const double now = 1e-3 * juce::Time::getMillisecondCounterHiRes();
-    if (status.failedSaves != failedSaves_) {  // stays for some seconds; later words wait
-        failedSaves_ = status.failedSaves;
-        tell(words(status.notSaved), true);
+    if (status.failures != failures_) {  // stays for some seconds; later words wait
+        failures_ = status.failures;
+        tell(words(status.failure), true);
         said_ = status.words;
         heldUntil_ = now + toldFor;
     } else if (status.words != said_ && now > heldUntil_) {
@@ -145,6 +146,11 @@ void Editor::update()
     if (auto standstill = owner_.standstill(); standstill != standstill_) {
         standstill_ = std::move(standstill);
         tell(standstill_.empty() ? juce::String("The engine runs again.") : words(standstill_), !standstill_.empty());
+    }
+    if (auto refusal = owner_.refusal(); refusal != refusal_) {
+        refusal_ = std::move(refusal);
+        if (!refusal_.empty())
+            tell(words(refusal_), true);
     }
     // A host may have restored another state.
     if (const auto version = owner_.modelVersion(); version != shown_) {

@@ -57,9 +57,12 @@ public:
     History& history() override { return history_; }
     void go(PageName) override;
     void use(const Model&, const juce::String& from) override;
-    void linearizeWith(const Model&, const juce::String& from) override;
+    void linearizeWith(const Model&, const juce::String& from, double fullScale) override;
+    void linearizeWith(const nlohmann::ordered_json&, const juce::String& from, double fullScale) override;
     void useFile(const juce::File&) override;
     void useBox(const nlohmann::ordered_json&, const juce::String& from) override;
+    void saveModel(const Model&) override;
+    void saveModel(const Model&, const juce::File&);  ///< tells what came of it
     void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;
@@ -102,13 +105,16 @@ private:
     const std::array<Page*, 5> pages_ {&measure_, &compare_, &diagnose_, &identify_, &linearize_};
     std::size_t page_ = 0;
     std::uint64_t seen_ = 0;                ///< version of the findings that the pages show
-    static constexpr double toldFor = 6.0;  ///< s, that something was not saved
+    static constexpr double toldFor = 6.0;  ///< s, that something was not saved or not opened
     double heldUntil_ = 0.0;
-    std::uint64_t failedSaves_ = 0;             ///< of the session, that were told
-    std::string said_;                          ///< of the session's status
-    std::string standstill_;                    ///< of the processor, as it was told
-    std::uint64_t rehearsed_ = 0;               ///< version of the rehearsal that was told
-    std::optional<AnyModel> replaced_;          ///< what played when the model that is rehearsed was asked for
+    std::uint64_t failures_ = 0;        ///< of the session, that were told
+    std::string said_;                  ///< of the session's status
+    std::string standstill_, refusal_;  ///< of the processor, as they were told
+    std::uint64_t rehearsed_ = 0;       ///< version of the rehearsal that was told
+    std::unique_ptr<juce::FileChooser> chooser_;
+    std::optional<AnyModel> replaced_;  ///< what played when the model that is rehearsed was asked for
+    /// V at full scale, or 0, where the signal is to be linearized with it afterwards
+    std::optional<double> linearizes_;
     std::uint64_t shown_ = 0;                   ///< version of the model that the last page shows
     bool focused_ = false;                      ///< has asked for the keyboard
     int coloured_ = -1;                         ///< version of the look that the window has

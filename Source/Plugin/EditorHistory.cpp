@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a person loads, adds and takes back through the window.
+// What a person loads, saves, adds and takes back through the window.
 #include "Plugin/Editor.h"
 
 #include "Engine/Error.h"
@@ -102,7 +102,6 @@ void Editor::noteModel(const AnyModel& before, const AnyModel& now)
         };
     };
     history_.did("Load a model", put(before), put(now));
-    owner_.tellHostOfState();
 }
 
 void Editor::use(const Model& model, const juce::String& from)
@@ -111,20 +110,29 @@ void Editor::use(const Model& model, const juce::String& from)
         const auto before = owner_.anyModel();
         owner_.setModel(model);
         replaced_.reset();
+        linearizes_.reset();
         noteModel(before, model);
+        owner_.tellHostOfState();
         tell("The model is from " + from + ".", false);
     } catch (const Error& error) {
         tell(words(error.what()), true);
     }
 }
 
-void Editor::linearizeWith(const Model& model, const juce::String& from)
+void Editor::linearizeWith(const Model& model, const juce::String& from, double fullScale)
 {
     const auto before = owner_.modelVersion();
     use(model, from);
     go(PageName::linearize);
     if (owner_.modelVersion() != before)
-        linearize_.turnOn();
+        linearize_.turnOn(fullScale);
+}
+
+void Editor::linearizeWith(const nlohmann::ordered_json& document, const juce::String& from, double fullScale)
+{
+    useBox(document, from);
+    linearizes_ = fullScale;
+    go(PageName::linearize);
 }
 
 void Editor::useFile(const juce::File& file)
@@ -146,8 +154,31 @@ void Editor::useFile(const juce::File& file)
 void Editor::useBox(const nlohmann::ordered_json& document, const juce::String& from)
 {
     replaced_ = owner_.anyModel();
+    linearizes_.reset();
     owner_.rehearsing().load(document, from.toStdString());
     tell("Rehearsing what it is worth to invert the model of " + from + ".", false);
+}
+
+void Editor::saveModel(const Model& model)
+{
+    chooser_ = std::make_unique<juce::FileChooser>(
+        "Save the model", juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("model.json"),
+        "*.json");
+    chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
+                          [this, model](const juce::FileChooser& chosen) {
+                              if (chosen.getResult() != juce::File())
+                                  saveModel(model, chosen.getResult());
+                          });
+}
+
+void Editor::saveModel(const Model& model, const juce::File& file)
+{
+    try {
+        writeModel(model, file.getFullPathName().toStdString());
+        tell("Wrote " + file.getFullPathName() + ".", false);
+    } catch (const Error& error) {
+        tell(words(error.what()), true);
+    }
 }
 
 /// What came of a model without physics that was loaded.
@@ -157,9 +188,14 @@ void Editor::noteRehearsal()
     if (status.version == rehearsed_)
         return;
     rehearsed_ = status.version;
-    if (!status.trouble && replaced_)
+    if (!status.trouble && replaced_) {  // the processor tells the host
         noteModel(*replaced_, owner_.anyModel());
+        const auto box = owner_.box();
+        if (linearizes_ && box && box->played.rehearsal)
+            linearize_.turnOn(*linearizes_);
+    }
     replaced_.reset();
+    linearizes_.reset();
     tell(words(status.words), status.trouble);
 }
 

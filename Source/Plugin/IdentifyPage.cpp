@@ -113,8 +113,8 @@ IdentifyPage::IdentifyPage(Window& window) : Page(window)
     fit_.onClick = [this] { fit(); };
     linearize_.onClick = [this] {
         if (const auto pnlss = session().identification().pnlss) {
-            window_.useBox(pnlss->document, "the page Identify");
-            window_.go(PageName::linearize);
+            const auto findings = session().findings();
+            window_.linearizeWith(pnlss->document, "the page Identify", findings ? findings->fullScale : 0.0);
         }
     };
     save_.onClick = [this] { save(); };

@@ -67,6 +67,9 @@ LinearizePage::LinearizePage(Window& window)
         const auto version = processor_.modelVersion();  // first: a model that comes in between is another one
         session().adapt(processor_.model(), version);
     };
+    save_.setTooltip("Saves the model as a file, as after it was adapted");
+    save_.setTitle("Save the model");
+    save_.onClick = [this] { window_.saveModel(processor_.model()); };
     drivers_.setTitle("Factory drivers");
     recipes_.setTitle("Recipes");
     recipes_.setTooltip("Mode, limits and effects for a purpose");
@@ -78,7 +81,7 @@ LinearizePage::LinearizePage(Window& window)
     target_.reshaped = [this] { resized(); };
     meters_.reshaped = [this] { resized(); };
     meters_.told = tell;
-    add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &adapt_});
+    add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &save_, &adapt_});
     for (auto* number : processor_.parameters().numbers()) {
         dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
         dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
@@ -112,6 +115,7 @@ void LinearizePage::showModel(const AnyModel& model)
     }
     facts_.setVisible(box_ || followed_ == processor_.modelVersion());
     adapt_.setVisible(!box_);
+    save_.setVisible(!box_);
     meters_.showModel(model);
     if (box_)
         showBox(box_->played);
@@ -127,8 +131,10 @@ void LinearizePage::showFactory(int id)
     drivers_.setSelectedId(id, juce::dontSendNotification);
 }
 
-void LinearizePage::turnOn()
+void LinearizePage::turnOn(double fullScale)
 {
+    if (fullScale > 0.0)  // first, as the limits that come with the mode are told in volts
+        dials_.front().second->enter(fullScale);
     mode_.follow();
     if (processor_.parameters().settings().mode == Mode::bypass)
         mode_.box().setSelectedItemIndex(static_cast<int>(Mode::linearize), juce::sendNotificationSync);
@@ -349,8 +355,10 @@ void LinearizePage::resized()
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
     auto modes = left.removeFromTop(28);
     if (!box_) {
-        adapt_.setBounds(modes.removeFromRight(72));
-        modes.removeFromRight(8);
+        for (auto* button : {&adapt_, &save_}) {
+            button->setBounds(modes.removeFromRight(72));
+            modes.removeFromRight(8);
+        }
     }
     mode_.box().setBounds(modes);
     left.removeFromTop(8);

@@ -27,7 +27,9 @@ public:
     void showModel(const AnyModel&);
     void tick() override;
     TargetPanel& target() { return target_; }
-    void turnOn();  ///< as if a person had chosen to linearize; only in bypass, which is the mode that nobody chose
+    /// As if a person had chosen to linearize; only in bypass, which is the mode that nobody chose.
+    /// @param fullScale  V at the loudspeaker for a sample of 1.0, entered before; 0: stays
+    void turnOn(double fullScale);
     void resized() override;
 
 private:
@@ -67,7 +69,7 @@ private:
     Menu drivers_, recipes_;
     int shownDriver_ = 0;  ///< in the list; 0: none
     juce::String shownRecipe_;
-    juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"};
+    juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"}, save_ {"Save..."};
     ChoiceBox mode_;
     /// each behind its title
     std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;

@@ -117,17 +117,24 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
                                       session().open(chosen.getResult().getFullPathName().toStdString());
                               });
     };
-    save_.onClick = [this] {
+    // What is saved is what was there at the click: while the dialog is open, another take may come.
+    const auto ask = [this](const juce::String& what, auto save) {
         const auto home = juce::File::getSpecialLocation(juce::File::userHomeDirectory);
-        const bool recording = session().recordingWithoutTake() != nullptr;
-        chooser_ = std::make_unique<juce::FileChooser>(
-            recording ? "Save the recording as a folder" : "Save the take as a folder",
-            home.getChildFile(recording ? "recording" : "take").getNonexistentSibling());
-        chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
+        chooser_ = std::make_unique<juce::FileChooser>("Save the " + what + " as a folder",
+                                                       home.getChildFile(what).getNonexistentSibling());
+        chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [save](const juce::FileChooser& chosen) {
             if (chosen.getResult() != juce::File())
                 save(chosen.getResult());
         });
     };
+    save_.onClick = [this, ask] {
+        ask("take", [this, now = session().findings()](const juce::File& folder) { saveTake(now, folder); });
+    };
+    saveRecording_.onClick = [this, ask] {
+        ask("recording",
+            [this, now = session().recordingWithoutTake()](const juce::File& folder) { saveRecording(now, folder); });
+    };
+    saveRecording_.setTooltip("The last recording, of which no take has come, with its plan");
     add({&openTitle_, &open_, &folder_, &openHint_, &virtualTitle_, &driver_, &seed_, &draw_, &measuringTitle_});
     save_.setEnabled(false);
     if (devices != nullptr) {
@@ -139,7 +146,8 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
         measuringTitle_.setFont(juce::Font(13.0f));
         look::setTone(measuringTitle_, look::Tone::dim);
     }
-    add({&verdict_, &report_, &signal_, &save_});
+    add({&verdict_, &report_, &signal_, &save_, &saveRecording_});
+    saveRecording_.setVisible(false);
 }
 
 void MeasurePage::choose()
@@ -166,27 +174,35 @@ void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
     taken_ = !spectra;
 }
 
-void MeasurePage::save(const juce::File& folder)
+/// Says so where the folder holds something of the kind already.
+bool MeasurePage::isFree(const juce::File& folder)
 {
-    const auto path = folder.getFullPathName().toStdString();
     bool holds = folder.getChildFile("recording.wav").exists() || folder.getChildFile("plan").exists();
     std::error_code none;
-    for (const auto& file : filesOfTake(path))
+    for (const auto& file : filesOfTake(folder.getFullPathName().toStdString()))
         holds = holds || std::filesystem::exists(file, none);
     if (holds)
         window_.tell("\"" + folder.getFileName() + "\" holds a take or a recording already: choose another name.",
                      true);
-    else if (session().recordingWithoutTake())
-        session().saveRecording(path);
-    else
-        session().saveTake(path);
+    return !holds;
+}
+
+void MeasurePage::saveTake(const std::shared_ptr<const Findings>& findings, const juce::File& folder)
+{
+    if (isFree(folder))
+        session().saveTake(findings, folder.getFullPathName().toStdString());
+}
+
+void MeasurePage::saveRecording(const std::shared_ptr<const RecordingOptions>& recording, const juce::File& folder)
+{
+    if (isFree(folder))
+        session().saveRecording(recording, folder.getFullPathName().toStdString());
 }
 
 void MeasurePage::tick()
 {
-    const bool recording = session().recordingWithoutTake() != nullptr;
-    save_.setButtonText(recording ? "Save the recording..." : "Save the take...");
-    save_.setEnabled(recording || taken_);
+    saveRecording_.setVisible(session().recordingWithoutTake() != nullptr);
+    save_.setEnabled(taken_);
     if (measuring_)
         measuring_->tick();
 }
@@ -220,7 +236,10 @@ void MeasurePage::resized()
     if (measuring_)
         measuring_->setBounds(left.removeFromTop(juce::jmin(left.getHeight(), MeasuringPanel::leastHeight + 60)));
     verdict_.setBounds(area.removeFromTop(44));
-    save_.setBounds(area.removeFromBottom(28).removeFromLeft(160));
+    line = area.removeFromBottom(28);
+    save_.setBounds(line.removeFromLeft(160));
+    line.removeFromLeft(8);
+    saveRecording_.setBounds(line.removeFromLeft(180));
     area.removeFromBottom(8);
     report_.setBounds(area.removeFromTop(area.getHeight() * 2 / 5));
     area.removeFromTop(8);

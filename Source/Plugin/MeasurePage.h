@@ -24,13 +24,16 @@ public:
 
     MeasuringPanel* measuring() { return measuring_.get(); }
     void choose();  ///< asks for a take
-    /// The take, or a recording that is none, as a folder, unless that holds one.
-    void save(const juce::File&);
+    // As a folder, unless that holds a take or a recording.
+    void saveTake(const std::shared_ptr<const Findings>&, const juce::File&);
+    void saveRecording(const std::shared_ptr<const RecordingOptions>&, const juce::File&);
 
 private:
+    bool isFree(const juce::File&);
+
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;
     juce::TextButton open_ {"Open a take..."}, folder_ {"Open a folder..."}, draw_ {"Measure it"},
-        save_ {"Save the take..."};
+        save_ {"Save the take..."}, saveRecording_ {"Save the recording..."};
     juce::ComboBox driver_;
     Dial seed_ {juce::Slider::IncDecButtons, juce::Slider::TextBoxLeft};
     std::unique_ptr<MeasuringPanel> measuring_;

@@ -11,7 +11,7 @@ namespace excursion::plugin {
 
 Measuring::Measuring(std::unique_ptr<OpenDevice> device, Measurement plan, std::vector<InputRole> roles,
                      double fullScale)
-    : device_(std::move(device)), plan_(std::move(plan)), roles_(std::move(roles))
+    : device_(std::move(device)), plan_(std::move(plan)), roles_(std::move(roles)), fullScale_(fullScale)
 {
     audio::MeasureOptions options;
     options.procedure = audio::procedureFor(plan_, {}, fullScale);
@@ -58,6 +58,7 @@ Recorded Measuring::recorded()
     Recorded recorded;
     recorded.device = device_->description();
     recorded.remarks = std::move(measured.remarks);
+    recorded.fullScale = fullScale_;
     recorded.recording.plan = std::move(plan_);
     Wav sound {static_cast<int>(std::lround(recorded.recording.plan->sampleRate)), {}};
     for (std::size_t k = 0; k < roles_.size(); ++k) {

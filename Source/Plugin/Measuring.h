@@ -28,6 +28,7 @@ struct Recorded {
     RecordingOptions recording;
     std::string device;
     std::vector<std::string> remarks;
+    double fullScale = 0.0;  ///< V at the loudspeaker for an output sample of 1.0
 };
 
 /// A measurement by audio::measure() through an open device, on a thread of its own: the level rises, and it fades out
@@ -50,6 +51,7 @@ private:
     const std::unique_ptr<OpenDevice> device_;
     Measurement plan_;
     const std::vector<InputRole> roles_;
+    const double fullScale_;
     std::stop_source stop_;
     mutable std::mutex mutex_;
     audio::Status status_;

@@ -285,7 +285,7 @@ void MeasuringPanel::take()
         auto recorded = measuring_->recorded();
         end();
         window_.processor().session().keep(std::move(recorded.recording), "Measured with " + recorded.device,
-                                           std::move(recorded.remarks));
+                                           std::move(recorded.remarks), recorded.fullScale);
     } catch (const Error& error) {
         end();
         window_.tell(words(error.what()), error.kind() != Error::Kind::cancelled);

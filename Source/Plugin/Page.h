@@ -23,11 +23,16 @@ public:
     /// loads it into the processor; tells when it can't be run
     virtual void use(const Model&, const juce::String& from) = 0;
     /// The same, and the signal is linearized from then on unless a person has chosen what is done with it
-    virtual void linearizeWith(const Model&, const juce::String& from) = 0;
+    /// @param fullScale  V at the loudspeaker for an output sample of 1.0, of which the limits are told; 0: not known,
+    ///                   and the parameter stays
+    virtual void linearizeWith(const Model&, const juce::String& from, double fullScale) = 0;
+    /// The same with the document of a model without physics, once its rehearsal has found that it helps
+    virtual void linearizeWith(const nlohmann::ordered_json&, const juce::String& from, double fullScale) = 0;
     /// use() with the model in a file, of a driver or without physics; the latter is rehearsed first
     virtual void useFile(const juce::File&) = 0;
     /// the document of a model without physics, which is rehearsed first
     virtual void useBox(const nlohmann::ordered_json&, const juce::String& from) = 0;
+    virtual void saveModel(const Model&) = 0;                  ///< asks for a file
     virtual void tell(const juce::String&, bool trouble) = 0;  ///< in the status line
 };
 

@@ -6,7 +6,9 @@
 #include "Engine/Import/ImportRecording.h"
 #include "Engine/Import/ReadTake.h"
 #include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Take/TakeFile.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -32,14 +34,31 @@ Findings from(const std::string& source)
     return told;
 }
 
+/// What went wrong, in a sentence.
+std::string sentenceOf(const std::exception_ptr& thrown)
+{
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+        return error.kind() == Error::Kind::cancelled ? "Cancelled." : error.what();
+    } catch (const std::exception& error) {
+        return std::string("This went wrong: ") + error.what() + ".";
+    }
+}
+
 }  // namespace
 
-Session::Session() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+Session::Session()
+    : thread_([this](const std::stop_token& stop) { run(stop); }),
+      reader_([this](const std::stop_token& stop) { read(stop); })
+{
+}
 
 Session::~Session()
 {
     cancel();
     thread_.request_stop();
+    reader_.request_stop();
     changed_.notify_all();
 }
 
@@ -55,6 +74,7 @@ void Session::cancel()
 {
     const std::lock_guard lock(mutex_);
     std::erase_if(orders_, [](const Order& waiting) { return !waiting.saves; });
+    readings_.clear();
     shape_.reset();
     stop_.request_stop();
     status_.busy = working_ || !orders_.empty();
@@ -67,8 +87,9 @@ void Session::run(const std::stop_token& stop)
     for (;;) {
         if (!changed_.wait(lock, stop, [this] { return !orders_.empty(); }))
             return;
-        const auto [work, saves] = std::move(orders_.front());
+        const auto [work, saves, reading] = std::move(orders_.front());
         orders_.erase(orders_.begin());
+        waitedFor_ = reading;
         stop_ = std::stop_source();
         working_ = true;
         status_.fraction = 0.0;
@@ -85,24 +106,71 @@ void Session::run(const std::stop_token& stop)
         std::string trouble;
         try {
             work(progress);
-        } catch (const Error& error) {
-            trouble = error.kind() == Error::Kind::cancelled ? "Cancelled." : error.what();
-        } catch (const std::exception& error) {
-            trouble = std::string("This went wrong: ") + error.what() + ".";
+        } catch (const std::exception&) {
+            trouble = sentenceOf(std::current_exception());
         }
         lock.lock();
         if (!trouble.empty()) {
             status_.words = trouble;
             status_.trouble = true;
-            if (saves) {
-                status_.notSaved = trouble;
-                ++status_.failedSaves;
-            }
+            if (saves)
+                fail(trouble);
         }
         working_ = false;
+        waitedFor_ = nullptr;
         status_.busy = !orders_.empty();
         changed_.notify_all();
     }
+}
+
+/// With the mutex held: beside the work that goes on.
+void Session::fail(const std::string& trouble)
+{
+    status_.failure = trouble;
+    ++status_.failures;
+}
+
+void Session::read(const std::stop_token& stop)
+{
+    std::unique_lock lock(mutex_);
+    while (changed_.wait(lock, stop, [this] { return !readings_.empty(); })) {
+        const auto reading = readings_.front();
+        readings_.erase(readings_.begin());
+        lock.unlock();
+        try {
+            if (const auto header = headerOf(reading->path); !header.empty()) {
+                auto own = readOwnTake(header);
+                reading->take = std::move(own.take);
+                reading->sweep = std::move(own.sweep);
+            } else {
+                reading->take = readTake(reading->path);
+            }
+        } catch (const std::exception&) {
+            reading->thrown = std::current_exception();
+        }
+        lock.lock();
+        came(reading);
+    }
+}
+
+/// With the mutex held: a file has been read, or cannot be. Its order is under way, waits behind others, or was
+/// cancelled.
+void Session::came(const ReadingPointer& reading)
+{
+    reading->done = true;
+    const auto place = std::find_if(orders_.begin(), orders_.end(),
+                                    [&](const Order& waiting) { return waiting.reading == reading; });
+    if (place != orders_.end() && reading->thrown) {
+        fail(sentenceOf(reading->thrown));
+        orders_.erase(place);
+        status_.busy = working_ || !orders_.empty();
+    } else if (place != orders_.end()) {
+        orders_.erase(std::remove_if(orders_.begin(), place, [](const Order& waiting) { return !waiting.saves; }),
+                      place);
+        shape_.reset();
+        stop_.request_stop();
+    }
+    changed_.notify_all();
 }
 
 void Session::wait() const
@@ -161,7 +229,8 @@ void Session::publishLadder()
     say(improvement_->ladder().sentence);
 }
 
-void Session::take(PreparedTake take, const Findings& told, const Progress& progress)
+void Session::take(PreparedTake take, const Findings& told, const Progress& progress,
+                   const std::shared_ptr<const RecordingOptions>& of)
 {
     Improvement work(take, {}, progress.part(0.0, 0.05));
     auto fresh = std::make_shared<Findings>(told);
@@ -172,7 +241,7 @@ void Session::take(PreparedTake take, const Findings& told, const Progress& prog
     {
         const std::lock_guard lock(mutex_);
         // what the check refuses may have to be imported in another way, as with a latency
-        if (!keeps_ && fresh->report.fitForUse())
+        if (of && recording_ == of && fresh->report.fitForUse())
             recording_ = nullptr;
     }
     publish(fresh);
@@ -187,11 +256,26 @@ void Session::take(PreparedTake take, const Findings& told, const Progress& prog
 
 void Session::open(const std::string& path)
 {
-    cancel();
-    order([this, path](const Progress& progress) {
+    const auto reading = std::make_shared<Reading>();
+    reading->path = path;
+    const auto work = [this, reading](const Progress& progress) {
         progress.at(0.0, "reading the take");
-        take(readTake(path), from(std::filesystem::path(path).filename().string()), progress);
-    });
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, progress.stop, [&] { return reading->done; });
+        }
+        progress.at(0.0, "reading the take");  // throws where that was cancelled
+        if (reading->thrown)
+            std::rethrow_exception(reading->thrown);
+        auto told = from(std::filesystem::path(reading->path).filename().string());
+        told.sweep = std::move(reading->sweep);
+        take(*std::exchange(reading->take, std::nullopt), told, progress);
+    };
+    const std::lock_guard lock(mutex_);
+    readings_.push_back(reading);
+    orders_.push_back({work, false, reading});
+    status_.busy = true;
+    changed_.notify_all();
 }
 
 void Session::open(const VirtualOrder& wanted)
@@ -212,12 +296,14 @@ void Session::open(const VirtualOrder& wanted)
     });
 }
 
-void Session::keep(RecordingOptions recorded, const std::string& source, std::vector<std::string> remarks)
+void Session::keep(RecordingOptions recorded, const std::string& source, std::vector<std::string> remarks,
+                   double fullScale)
 {
     const std::lock_guard lock(mutex_);
     recording_ = std::make_shared<const RecordingOptions>(std::move(recorded));
     recorded_ = from(source);
     recorded_.remarks = std::move(remarks);
+    recorded_.fullScale = fullScale;
     keeps_ = true;
 }
 
@@ -244,7 +330,7 @@ void Session::openKept()
             auto imported = importRecording(*recording, progress.part(0.0, 0.1));
             auto all = told;
             all.remarks.insert(all.remarks.end(), imported.remarks.begin(), imported.remarks.end());
-            take(std::move(imported.take), all, progress.part(0.1, 1.0));
+            take(std::move(imported.take), all, progress.part(0.1, 1.0), recording);
         } catch (const Error& error) {
             if (error.kind() == Error::Kind::cancelled || recordingWithoutTake() != recording)
                 throw;

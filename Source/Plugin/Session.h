@@ -6,11 +6,13 @@
 #include "Engine/Diagnosis/LadderFile.h"
 #include "Engine/Import/RecordingOptions.h"
 #include "Engine/Take/Measurement.h"
+#include "Engine/Take/SweepExcitation.h"
 #include "Plugin/FittedPnlss.h"
 #include "Plugin/Identifying.h"
 
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -26,7 +28,10 @@ struct Findings {
     std::string source;                ///< where the take is from, in words
     std::vector<std::string> remarks;  ///< on the recording: what is odd in it, in sentences
     std::string truth;                 ///< what the virtual loudspeaker hides; empty for a real one
+    /// V at the loudspeaker for an output sample of 1.0, as it was measured; 0: not known
+    double fullScale = 0.0;
     std::shared_ptr<const PreparedTake> take;
+    std::optional<SweepExcitation> sweep;  ///< what the take was played with, where its file says so
     CheckReport report;
     LadderFile file;                               ///< without rungs until the first fit is done
     std::vector<std::vector<Waveform>> waveforms;  ///< [level][channel], of the last rung
@@ -55,16 +60,20 @@ struct Adapted {
 /// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back,
 /// identify models without physics. Every
 /// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
-/// other. A new take makes what is under way stop.
+/// other. A new take makes what is under way stop; files are read on a second thread, so that one that is none does
+/// not.
 class Session {
 public:
     Session();
     ~Session();
 
-    void open(const std::string& path);  ///< as readTake()
+    /// As readSweepTake(), or readTake() for responses. What is under way goes on until the take has been read, and for
+    /// good where it cannot be.
+    void open(const std::string& path);
     void open(const VirtualOrder&);
     /// Keeps a recording that was just made until openKept(), whatever else is opened meanwhile.
-    void keep(RecordingOptions, const std::string& source, std::vector<std::string> remarks);
+    /// @param fullScale  V at the loudspeaker for an output sample of 1.0; 0: not known
+    void keep(RecordingOptions, const std::string& source, std::vector<std::string> remarks, double fullScale = 0.0);
     bool keeps() const;
     void openKept();  ///< as importRecording(); nothing where none is kept
     void add(const std::string& effect);
@@ -77,11 +86,12 @@ public:
     /// To the take, by what drifts with temperature and age.
     /// @param version  comes back with what comes of it
     void adapt(const Model&, std::uint64_t version);
-    // Saves what is there when the method is called. Neither cancel() nor another take drops the order; the destructor
-    // waits for it.
-    void saveReport(const std::string& path);
-    void saveTake(const std::string& folder);
-    void saveRecording(const std::string& folder);  ///< recordingWithoutTake(), with its plan and how it is imported
+    // Saves what it is given, which a page takes when Save is pressed: while a file dialog is open, what is there may
+    // become another. Neither cancel() nor another take drops the order; the destructor waits for it.
+    void saveReport(std::shared_ptr<const Findings>, const std::string& path);
+    void saveTake(std::shared_ptr<const Findings>, const std::string& folder);
+    /// with its plan and how it is imported
+    void saveRecording(std::shared_ptr<const RecordingOptions>, const std::string& folder);
 
     void cancel();  ///< stops what is under way, and drops all waiting orders except saves
 
@@ -90,14 +100,16 @@ public:
         double fraction = 0.0;
         std::string words;     ///< what is being done, or what the last order came to
         bool trouble = false;  ///< the last order failed
-        std::string notSaved;  ///< why the last save failed that did
-        std::uint64_t failedSaves = 0;
+        /// why the last order failed that did without stopping the others: a save, or a file to be opened
+        std::string failure;
+        std::uint64_t failures = 0;
         std::uint64_t version = 0;  ///< counts the findings
         std::uint64_t models = 0;   ///< counts the identifications
     };
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
-    /// The last recording, until a take that is fit for use is made, or it is saved. Null: none.
+    /// The last recording, until a take that is fit for use is made of it, or it is saved; another take leaves it.
+    /// Null: none.
     std::shared_ptr<const RecordingOptions> recordingWithoutTake() const;
     Identification identification() const;
     /// What came of the latest order to adapt, once.
@@ -107,14 +119,29 @@ public:
 
 private:
     using Work = std::function<void(const Progress&)>;
+    /// A file that is to be opened.
+    struct Reading {
+        std::string path;
+        std::optional<Take> take;
+        std::optional<SweepExcitation> sweep;
+        std::exception_ptr thrown;  ///< null where it could be read
+        bool done = false;
+    };
+    using ReadingPointer = std::shared_ptr<Reading>;
     struct Order {
         Work work;
         bool saves = false;
+        ReadingPointer reading = nullptr;  ///< that it waits for
     };
     void order(Work, bool saves = false);
     void run(const std::stop_token&);
+    void read(const std::stop_token&);
+    void came(const ReadingPointer&);
+    void fail(const std::string& trouble);
     /// @param told  Findings without a take
-    void take(PreparedTake, const Findings& told, const Progress&);
+    /// @param of    the recording that the take is made of, which leaves where the check finds it fit for use
+    void take(PreparedTake, const Findings& told, const Progress&,
+              const std::shared_ptr<const RecordingOptions>& of = nullptr);
     void publish(std::shared_ptr<Findings>);
     void publishLadder();
     std::shared_ptr<const Findings> taken() const;
@@ -125,8 +152,10 @@ private:
     mutable std::mutex mutex_;                ///< of what follows
     mutable std::condition_variable_any changed_;
     std::vector<Order> orders_;
-    std::optional<ShapeWish> shape_;  ///< of the order to shape that waits
-    std::stop_source stop_;           ///< of the order under way
+    std::vector<ReadingPointer> readings_;  ///< that have not begun
+    ReadingPointer waitedFor_;              ///< by the order under way
+    std::optional<ShapeWish> shape_;        ///< of the order to shape that waits
+    std::stop_source stop_;                 ///< of the order under way
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
@@ -135,7 +164,7 @@ private:
     bool keeps_ = false;  ///< it has not been opened yet
     Identification identification_;
     std::optional<Adapted> adapted_;
-    std::jthread thread_;
+    std::jthread thread_, reader_;
 };
 
 }  // namespace excursion::plugin

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session writes to files: what is there when it is asked for.
+// What a session writes to files.
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
+#include "Engine/Take/SweepTake.h"
 #include "Engine/Take/TakeFile.h"
 #include "Plugin/Session.h"
 #include "Report/Report.h"
 
 #include <filesystem>
+#include <utility>
 
 namespace excursion::plugin {
 
-void Session::saveReport(const std::string& path)
+void Session::saveReport(std::shared_ptr<const Findings> now, const std::string& path)
 {
-    const auto now = findings();
     order(
-        [this, now, path](const Progress& progress) {
+        [this, now = std::move(now), path](const Progress& progress) {
             if (!now || now->file.ladder.rungs.empty())
                 throw Error(Error::Kind::usage,
                             "There is no model of a take to report on: open a take that is fit for use first.");
@@ -26,16 +27,15 @@ void Session::saveReport(const std::string& path)
         true);
 }
 
-void Session::saveTake(const std::string& folder)
+void Session::saveTake(std::shared_ptr<const Findings> now, const std::string& folder)
 {
-    const auto now = findings();
     order(
-        [this, now, folder](const Progress& progress) {
+        [this, now = std::move(now), folder](const Progress& progress) {
             const auto* measurement = now ? now->take->inTime() : nullptr;
             if (measurement == nullptr)
                 throw Error(Error::Kind::usage, "There is no take of time signals to save.");
             progress.at(0.0, "writing the take");
-            writeMeasurement(*measurement, folder);
+            writeSweepTake({*measurement, now->sweep}, folder);
             say("Wrote " + folder + ".");
         },
         true);
@@ -47,11 +47,10 @@ std::shared_ptr<const RecordingOptions> Session::recordingWithoutTake() const
     return recording_;
 }
 
-void Session::saveRecording(const std::string& folder)
+void Session::saveRecording(std::shared_ptr<const RecordingOptions> recording, const std::string& folder)
 {
-    const auto recording = recordingWithoutTake();
     order(
-        [this, recording, folder](const Progress& progress) {
+        [this, recording = std::move(recording), folder](const Progress& progress) {
             if (!recording || recording->sounds.empty() || !recording->plan)
                 throw Error(Error::Kind::usage, "There is no recording to save.");
             progress.at(0.0, "writing the recording");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "BlackBox/EveryClass.h"
+#include "Plugin/Clicks.h"
 #include "Plugin/Editor.h"
+#include "Plugin/Walk.h"
 
 #include "Engine/Loudspeaker/ModelFile.h"
 
@@ -9,6 +11,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 using namespace excursion;
@@ -94,4 +97,52 @@ TEST_CASE("A model without physics is loaded from a file, told what it is worth,
     CHECK_FALSE(processor.box());
     CHECK(processor.model().name == first);
     std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("A measured driver is linearized at the volts that its output was measured with, a step and a gesture of its "
+          "own",
+          "[plugin]")
+{
+    Processor processor;
+    Editor editor(processor);
+    auto findings = std::make_shared<plugin::Findings>(*plugin::syntheticFindings(2));
+    const auto click = [&] {
+        editor.show(findings);
+        editor.go(plugin::PageName::diagnose);
+        editor.update();
+        plugin::click(editor, "Linearize with this model");
+        return processor.parameters().settings().fullScale;
+    };
+    CHECK(click() == 10.0);  // as it is not known
+    editor.undo();
+    editor.undo();
+    findings->fullScale = 16.125;
+    CHECK(click() == 16.125);
+    CHECK(processor.parameters().settings().mode == Mode::linearize);
+    editor.undo();
+    CHECK(editor.history().nextBack() == "Volts at 0 dBFS");
+    editor.undo();
+    CHECK(processor.parameters().settings().fullScale == 10.0);
+    editor.redo();
+    CHECK(processor.parameters().settings().fullScale == 16.125);
+}
+
+TEST_CASE("The model of a diagnosis is saved as a file that can be loaded", "[plugin]")
+{
+    Processor processor;
+    Editor editor(processor);
+    const auto findings = plugin::syntheticFindings(2);
+    editor.show(findings);
+    editor.go(plugin::PageName::diagnose);
+    editor.update();
+    REQUIRE(plugin::find<juce::TextButton>(editor, "Save the model...") != nullptr);
+    CHECK(plugin::find<juce::TextButton>(editor, "Save the model...")->isEnabled());
+    const auto file = juce::File::createTempFile("model.json");
+    const auto& model = findings->file.ladder.model();
+    editor.saveModel(model, file);
+    CHECK(editor.status().contains(file.getFullPathName()));
+    CHECK(toJson(readModel(file.getFullPathName().toStdString())).dump() == toJson(model).dump());
+    file.deleteFile();
+    editor.saveModel(model, juce::File("/nowhere/at all/model.json"));
+    CHECK(editor.status().contains("at all"));
 }

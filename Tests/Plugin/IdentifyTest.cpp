@@ -299,6 +299,10 @@ TEST_CASE("A PNLSS begins at the linear model, is cancelled, is fitted, and goes
     CHECK(processor.box()->document == pnlss->document);
     REQUIRE(processor.box()->played.rehearsal);
     CHECK(processor.box()->played.rehearsal->gainDb() > 15.0);
+    CHECK(processor.parameters().settings().mode == Mode::linearize);  // what the button says
+    editor.undo();
+    CHECK(processor.parameters().settings().mode == Mode::bypass);
+    CHECK(processor.box());
     editor.undo();  // the driver again
     CHECK_FALSE(processor.box());
     editor.undo();  // without the polynomial model

@@ -104,6 +104,24 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
     CHECK(findings->file.ladder.verdict == Verdict::missingEffect);
     CHECK(findings->file.ladder.rungs[0].diagnosis.ranking[0].effect == "stiffness");
 
+    SECTION("its model is linearized at the volts that the output was measured with")
+    {
+        CHECK(findings->fullScale == 16.0);
+        auto& parameters = processor.parameters();
+        REQUIRE(parameters.settings().fullScale == 10.0);
+        editor.go(PageName::diagnose);
+        editor.update();
+        plugin::click(editor, "Linearize with this model");
+        CHECK(parameters.settings().fullScale == 16.0);
+        CHECK(parameters.settings().mode == Mode::linearize);
+        editor.undo();
+        CHECK(parameters.settings().mode == Mode::bypass);
+        CHECK(parameters.settings().fullScale == 16.0);
+        editor.undo();
+        CHECK(parameters.settings().fullScale == 10.0);
+        editor.redo();
+        CHECK(parameters.settings().fullScale == 16.0);
+    }
     SECTION("a channel is played where it is among those that are open")
     {
         const auto first = processor.session().findings();
@@ -138,7 +156,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         const auto folder = juce::File::createTempFile("take");
         REQUIRE(folder.createDirectory());
         REQUIRE(folder.getChildFile("measurement.json").replaceWithText("mine"));
-        editor.measure().save(folder);
+        editor.measure().saveTake(processor.session().findings(), folder);
         editor.update();
         CHECK(editor.status().contains("holds a take or a recording already"));
         processor.session().wait();
@@ -256,8 +274,20 @@ TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
     CHECK(app.status().contains("Save the recording"));
     const auto recording = session.recordingWithoutTake();
     REQUIRE(recording);
+    // Another take, which is fit for use, leaves it where it is.
+    session.open(plugin::VirtualOrder {"midbass", 3});
+    for (int k = 0; k < 60000 && !session.findings(); ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    REQUIRE(session.findings());
+    CHECK(session.findings()->report.fitForUse());
+    session.cancel();
+    session.wait();
+    app.editor->update();
+    CHECK(session.recordingWithoutTake() == recording);
+    CHECK(plugin::find<juce::TextButton>(*app.editor, "Save the take...")->isEnabled());
+    REQUIRE(plugin::find<juce::TextButton>(*app.editor, "Save the recording...") != nullptr);
     const auto folder = juce::File::createTempFile("refused");
-    app.editor->measure().save(folder);
+    app.editor->measure().saveRecording(recording, folder);
     session.wait();
     const auto place = std::filesystem::path(folder.getFullPathName().toStdString());
     CHECK(readWav(place / "recording.wav").channels.size() == 3);
@@ -265,7 +295,7 @@ TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
     CHECK(!session.recordingWithoutTake());
     CHECK(juce::File(folder.getChildFile("import.txt")).loadFileAsString().contains("--map 2=current:4"));
     app.editor->update();
-    app.editor->measure().save(folder);
+    app.editor->measure().saveRecording(recording, folder);
     app.editor->update();
     CHECK(app.status().contains("holds a take or a recording already"));
     folder.deleteRecursively();
@@ -284,7 +314,7 @@ TEST_CASE("What was measured waits for the work that is under way, whatever else
     CHECK(!app.panel().running());
     CHECK(app.status().contains("waits"));
     const auto folder = juce::File::createTempFile("waiting");
-    session.saveRecording(folder.getFullPathName().toStdString());
+    session.saveRecording(session.recordingWithoutTake(), folder.getFullPathName().toStdString());
     session.wait();
     CHECK(folder.getChildFile("recording.wav").existsAsFile());
     REQUIRE(session.keeps());

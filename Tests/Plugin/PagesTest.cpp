@@ -196,7 +196,7 @@ TEST_CASE("Work in the background is cancelled, and what cannot be read is told"
     CHECK(session.status().trouble);
     CHECK(juce::String(session.status().words).contains("open a take"));
     session.undo();
-    session.saveTake((std::filesystem::temp_directory_path() / "no take").string());
+    session.saveTake(session.findings(), (std::filesystem::temp_directory_path() / "no take").string());
     session.wait();
     CHECK(session.status().trouble);
     // A window that is closed and a processor that goes away in the midst of work leave nothing behind.

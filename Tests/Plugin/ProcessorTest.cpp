@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/Editor.h"
 #include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
@@ -144,21 +145,52 @@ TEST_CASE("The state is byte for byte the same when it is saved twice, and when 
     }
 }
 
-TEST_CASE("A state that cannot be used changes nothing", "[plugin]")
+TEST_CASE("A state that cannot be used changes nothing, and goes back to the host until something is changed",
+          "[plugin]")
 {
     Processor processor;
-    processor.parameters().set(plugin::recipeFromText(plugin::factoryRecipes().front().text, "a recipe"));
+    auto recipe = plugin::recipeFromText(plugin::factoryRecipes().front().text, "a recipe");
+    processor.parameters().set(recipe);
     const auto state = stateOf(processor);
     auto text = state.toString().toStdString();
     auto later = text;
     later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
-    for (const auto& broken : {std::string(), std::string("{"), std::string("[]"), std::string(1000, '\0'),
-                               text.substr(0, text.size() / 2), later}) {
+    const auto now = [&] { return toJson(processor.parameters().recipe()).dump(); };
+    const auto kept = now();
+    const auto version = processor.modelVersion();
+    CHECK(processor.refusal().empty());
+    for (const auto& broken :
+         {std::string("{"), std::string("[]"), std::string(1000, '\0'), text.substr(0, text.size() / 2), later}) {
         processor.setStateInformation(broken.data(), static_cast<int>(broken.size()));
-        CHECK(stateOf(processor) == state);
+        CHECK(now() == kept);
+        CHECK(processor.modelVersion() == version);
+        // A host that saves now would otherwise write over the only copy.
+        CHECK((stateOf(processor) == juce::MemoryBlock(broken.data(), broken.size())));
+        CHECK((stateOf(processor) == juce::MemoryBlock(broken.data(), broken.size())));
+        CHECK(juce::String(processor.refusal()).startsWith("What was saved is not used: "));
     }
-    processor.setStateInformation(nullptr, 0);
-    CHECK(stateOf(processor) == state);
+    CHECK(juce::String(processor.refusal()).contains("version"));
+    plugin::Editor editor(processor);
+    editor.update();
+    CHECK(editor.status() == juce::String(processor.refusal()));
+    for (const auto size : {0, 1}) {  // nothing that could be lost
+        processor.setStateInformation(size == 0 ? text.data() : nullptr, size);
+        CHECK((stateOf(processor) == juce::MemoryBlock(later.data(), later.size())));
+    }
+    SECTION("a parameter")
+    {
+        recipe.amount = 0.5;
+        processor.parameters().set(recipe);
+        CHECK(stateOf(processor).toString().contains("0.5"));
+    }
+    SECTION("a model") { processor.setModel(plugin::modelFromText(plugin::factoryDrivers().back().text, "a driver")); }
+    SECTION("a state that can be used")
+    {
+        processor.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+        CHECK((stateOf(processor) == state));
+    }
+    CHECK((stateOf(processor) != juce::MemoryBlock(later.data(), later.size())));
+    CHECK(processor.refusal().empty());
 }
 
 TEST_CASE("A recipe reaches the parameters and comes back as it was", "[plugin]")
