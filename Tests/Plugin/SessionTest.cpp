@@ -33,7 +33,7 @@ struct NewFolder {
 /// Until the take has been read, before its first model is there.
 void waitForTake(const Session& session)
 {
-    for (int k = 0; k < 4000 && !session.findings(); ++k)
+    for (int k = 0; k < 60000 && !session.findings(); ++k)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     REQUIRE(session.findings());
     REQUIRE(session.findings()->file.ladder.rungs.empty());
