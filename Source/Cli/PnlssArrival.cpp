@@ -31,8 +31,8 @@ Arrival atNoise(const PnlssArguments& options, const PnlssTake& data, const Pnls
     const auto fewer = std::string("a longer take that goes everywhere early on, or fewer coefficients: --mask, "
                                    "--terms, a lower --order or --degree.");
     if (!validated && 2.0 * static_cast<double>(outcome.parameters) >= judgedSamples(estimation)) {
-        told.sentence = "It is not known whether the error is at the noise: so many coefficients, "
-                        + std::to_string(outcome.parameters) + ", leave little of any "
+        told.sentence = "It is not known whether the error is at the noise: " + std::to_string(outcome.parameters)
+                        + " coefficients can follow almost any "
                         + std::to_string(static_cast<long>(judgedSamples(estimation)))
                         + " samples, and no records are held out.";
         told.advice = "Try " + fewer;
@@ -108,7 +108,7 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
     if (!told.arrived.value_or(false) && outcome.constantShare > 0.5)
         told.advice = "Try " + std::string(options.terms.empty() ? "--offset" : "the monomial 1 among --terms")
                       + ": most of what the start leaves is a constant, as a sensor's offset is."
-                      + (told.advice.empty() ? "" : " Else try" + told.advice.substr(tryThis.size()));
+                      + (told.advice.empty() ? "" : " Otherwise try" + told.advice.substr(tryThis.size()));
     return told;
 }
 

@@ -87,9 +87,8 @@ void Session::run(const std::stop_token& stop)
     for (;;) {
         if (!changed_.wait(lock, stop, [this] { return !orders_.empty(); }))
             return;
-        const auto [work, saves, reading] = std::move(orders_.front());
+        const auto [work, saves, file] = std::move(orders_.front());
         orders_.erase(orders_.begin());
-        waitedFor_ = reading;
         stop_ = std::stop_source();
         working_ = true;
         status_.fraction = 0.0;
@@ -117,7 +116,6 @@ void Session::run(const std::stop_token& stop)
                 fail(trouble);
         }
         working_ = false;
-        waitedFor_ = nullptr;
         status_.busy = !orders_.empty();
         changed_.notify_all();
     }

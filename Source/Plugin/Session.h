@@ -153,7 +153,6 @@ private:
     mutable std::condition_variable_any changed_;
     std::vector<Order> orders_;
     std::vector<ReadingPointer> readings_;  ///< that have not begun
-    ReadingPointer waitedFor_;              ///< by the order under way
     std::optional<ShapeWish> shape_;        ///< of the order to shape that waits
     std::stop_source stop_;                 ///< of the order under way
     bool working_ = false;

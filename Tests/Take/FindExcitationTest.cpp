@@ -163,6 +163,11 @@ TEST_CASE("Of periods that nothing settled before, the first is settling")
     CHECK(take.excitation->settlePeriods == 1);
     CHECK(take.excitation->periods == 2);
     CHECK(take.excitation->totalSamples() == samples);
+    take.excitation->settlePeriods = 0;
+    take.excitation->periods = 2;
+    completeExcitation(take);
+    CHECK(take.excitation->settlePeriods == 1);
+    CHECK(take.excitation->periods == 1);
     for (const auto& [settling, periods] : {std::pair {0, 1}, {1, 2}, {2, 1}}) {  // these stay
         take.excitation->settlePeriods = settling;
         take.excitation->periods = periods;

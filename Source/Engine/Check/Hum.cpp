@@ -86,10 +86,10 @@ double shareLeft(double frequency, double reach, const Excitation& e, double sam
     return std::max(least, power);  // each of the two phases has half of the power
 }
 
-/// Where a played line lies on a harmonic, what a loudspeaker drifts tears it in the same way as hum does: the median
-/// of what the nearest other lines are torn by. 0 without such a line.
-/// @param tornAt  the largest power of the residual spectrum around a place, in lines of that
-double tornBeside(double centre, double reach, const Excitation& e, const std::function<double(double)>& tornAt)
+/// A loudspeaker that drifts scatters a played line on a harmonic just as hum does: the median of the scatter of the
+/// nearest other lines. 0 where no line is played there.
+/// @param scatterAt  the largest power of the residual spectrum around a place, in lines of that
+double scatteredBeside(double centre, double reach, const Excitation& e, const std::function<double(double)>& scatterAt)
 {
     constexpr std::size_t neighbours = 6;
     std::vector<double> places;
@@ -106,10 +106,10 @@ double tornBeside(double centre, double reach, const Excitation& e, const std::f
     std::sort(places.begin(), places.end(),
               [centre](double a, double b) { return std::abs(a - centre) < std::abs(b - centre); });
     places.resize(std::min(places.size(), neighbours));
-    std::vector<double> torn;
+    std::vector<double> scatter;
     for (const double place : places)
-        torn.push_back(tornAt(place));
-    return medianOf(torn);
+        scatter.push_back(scatterAt(place));
+    return medianOf(scatter);
 }
 
 }  // namespace
@@ -150,16 +150,16 @@ std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& chann
                     beside.push_back(power[k]);
             }
             // Multiples of the number of periods were taken away with the average.
-            const auto tornAt = [&](double place) {
+            const auto scatterAt = [&](double place) {
                 double largest = 0.0;
-                for (auto k = static_cast<std::size_t>(std::max(1.0, place - reach));
+                for (auto k = static_cast<std::size_t>(std::ceil(std::max(1.0, place - reach)));
                      static_cast<double>(k) <= place + reach && k < power.size(); ++k)
                     if (k % static_cast<std::size_t>(e.periods) != 0)
                         largest = std::max(largest, power[k]);
                 return largest;
             };
-            const double peak = tornAt(centre),
-                         floor = std::max(medianOf(beside), tornBeside(centre, reach, averages.excitation(), tornAt));
+            const double peak = scatterAt(centre),
+                         floor = std::max(medianOf(beside), scatteredBeside(centre, reach, e, scatterAt));
             const double standsOut = 10.0 * std::log10(peak / std::max(1e-30 * signal, floor));
             if (standsOut < 15.0)
                 continue;

@@ -208,14 +208,15 @@ double relativeDifference(std::span<const double> earlier, std::span<const doubl
 }
 
 /// The median of the differences that the other realizations have between the same two periods: a motion that has not
-/// settled makes those of the first pair large in most of them. 0 without others.
+/// settled makes those of the first pair large in most of them. Of two realizations the other one tells only of the
+/// first pair, as it may have been knocked itself. 0 where nothing tells.
 double atSamePeriod(const std::vector<PeriodJump>& pairs, const std::vector<double>& differences, std::size_t own)
 {
     std::vector<double> others;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (i != own && pairs[i].period == pairs[own].period)
             others.push_back(differences[i]);
-    return others.empty() ? 0.0 : medianOf(others);
+    return others.empty() || (others.size() == 1 && pairs[own].period > 0) ? 0.0 : medianOf(others);
 }
 
 /// PeriodJump::moved: what the best two steps among blocks of the difference span.

@@ -51,9 +51,10 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
     return best;
 }
 
-/// Whether the held-out sections show nothing of an effect, however much it explains where it was fitted: what wanders
-/// by chance can be followed by several effects together, which then seem to be missed beside each other. Of no channel
-/// that holds a hundredth of the largest excess does such an effect take a fiftieth.
+/// Whether the held-out sections show nothing of an effect, however much it explains where it was fitted. Where a
+/// parameter wanders at random, several effects together can follow its course in the few fitted sections, and each
+/// then seems to be needed beside the others. Such an effect takes less than a fiftieth off the excess of every channel
+/// that holds a hundredth of the largest one.
 bool isUnseen(const Comparison& before, const Comparison& after)
 {
     constexpr double small = 0.01, hardly = 0.02;

@@ -24,11 +24,15 @@ DrivenBand drivenBand(std::span<const double> input, double sampleRate)
     for (std::size_t begin = 0; begin + length <= input.size(); begin += length / 2) {
         std::vector<double> piece(input.begin() + static_cast<std::ptrdiff_t>(begin),
                                   input.begin() + static_cast<std::ptrdiff_t>(begin + length));
+        double mean = 0.0;  // of an offset the window would make the lowest line
+        for (const double value : piece)
+            mean += value / static_cast<double>(length);
         for (std::size_t n = 0; n < length; ++n)
-            piece[n] *= 0.5
-                        - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
+            piece[n] =
+                (piece[n] - mean)
+                * (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length)));
         const auto spectrum = fft(piece);
-        for (std::size_t k = 1; k < length / 2; ++k)
+        for (std::size_t k = 2; k < length / 2; ++k)
             power[bandOf(k)] += std::norm(spectrum[k]);
     }
     const double most = *std::max_element(power.begin(), power.end());

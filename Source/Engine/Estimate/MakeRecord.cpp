@@ -158,7 +158,8 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
 Measurement thinned(Measurement take, double bandHigh)
 {
     double fewer = 1.0;
-    while (rateFor(bandHigh, take.sampleRate) <= 0.5 * take.sampleRate / fewer)
+    constexpr double fewest = 64.0;  // what the interpolation can do
+    while (fewer < fewest && rateFor(bandHigh, take.sampleRate) <= 0.5 * take.sampleRate / fewer)
         fewer *= 2.0;
     if (fewer > 1.0)
         for (auto& channel : take.channels)
@@ -172,13 +173,15 @@ void addWindows(const Measurement& take, double recordedRate, const RecordOption
 {
     const std::size_t length = take.length();
     const auto samplesOf = [&](double seconds, double fewest) {
-        return static_cast<std::size_t>(take.sampleRate * std::max(seconds, fewest / recordedRate));
+        return static_cast<std::size_t>(std::lround(take.sampleRate * std::max(seconds, fewest / recordedRate)));
     };
     const auto lead = samplesOf(options.leadInSeconds, 1024.0);
     auto window = samplesOf(options.windowSeconds, 2048.0);
     if (length < lead + 256)
-        throw Error(Error::Kind::data, "The take is only " + std::to_string(length)
-                                           + " samples long; a fit needs at least a second of signal.");
+        throw Error(Error::Kind::data,
+                    "The take is only "
+                        + std::to_string(std::lround(static_cast<double>(length) / take.sampleRate * recordedRate))
+                        + " samples long; a fit needs at least a second of signal.");
     window = std::min(window, length - lead);
     const std::size_t count = std::max<std::size_t>(1, (length - lead) / window);
     std::vector<double> whole(record.channels.size(), 0.0);  // power of a channel, on all lines of all windows
@@ -246,7 +249,7 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
                     "displacement, velocity, acceleration or pressure.");
 
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
-    record.bandLow = 0.0;
+    record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
         const auto& lines = averages.lines();  // refuses a record that is too short, or in which nothing repeats
@@ -272,8 +275,6 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
     uncouple(record, take.coupling);
     if (const auto pressure = record.channelIndex(Quantity::pressure))
         takeOffHighPass(record, *pressure, options.microphoneCorner);
-    if (record.bandLow <= 0.0)
-        record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.highFrequency = std::min(trustedBand * std::min(record.sampleRate, take.sampleRate),
                                     distortionBand * record.bandHigh);
     return record;

@@ -95,8 +95,8 @@ std::optional<ImpedanceShape> scanImpedance(const ResponseTarget& target)
     std::optional<ImpedanceShape> best;
     double lowest = curve.power;
     constexpr double gridStep = 1.03;  // a quality of 15 is still seen
-    for (double f0 = curve.omega.front() / (2.0 * std::numbers::pi); f0 < 0.7 * reference / (2.0 * std::numbers::pi);
-         f0 *= gridStep)
+    for (double f0 = std::max(curve.omega.front(), 1e-4 * reference) / (2.0 * std::numbers::pi);
+         f0 < 0.7 * reference / (2.0 * std::numbers::pi); f0 *= gridStep)
         for (const double Q : {0.4, 0.7, 1.2, 2.0, 3.5, 6.0, 10.0}) {
             const double w0 = 2.0 * std::numbers::pi * f0;
             Matrix N = fixed;

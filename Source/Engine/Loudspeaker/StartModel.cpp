@@ -174,7 +174,7 @@ void considerGrid(Contest& contest, Model model, const Sight& sight)
             ohms.push_back(sight.current->impedance ? std::abs(v) : 1.0 / std::abs(v));
         Re = 0.8 * medianOf(std::move(ohms));
     }
-    for (double f0 = sight.low * 1.1; f0 < sight.high; f0 *= 1.45)
+    for (double f0 = 1.1 * std::max(sight.low, 1e-4 * sight.high); f0 < sight.high; f0 *= 1.45)
         for (const double Q : {1.0, 5.0, 25.0}) {
             const double omega = 2.0 * std::numbers::pi * f0;
             const double mass = model.baseParameter("m").value;
