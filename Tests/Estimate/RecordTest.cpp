@@ -288,6 +288,25 @@ TEST_CASE("Lines that are not known are found", "[record]")
     CHECK(found.sections.front().excited == known.sections.front().excited);
 }
 
+TEST_CASE("Of periods that nothing settled before, the first is settling", "[record]")
+{
+    const auto settled = take(1, 1e-4);
+    auto unsettled = settled;
+    unsettled.excitation->settlePeriods = 0;
+    unsettled.excitation->periods = settle + periods;
+    const auto expected = makeRecord(settled), record = makeRecord(unsettled);
+    REQUIRE(record.sections.size() == expected.sections.size());
+    CHECK(record.noiseKnown);
+    for (std::size_t s = 0; s < record.sections.size(); ++s) {
+        CHECK(record.sections[s].input == expected.sections[s].input);
+        CHECK(record.sections[s].measured == expected.sections[s].measured);
+    }
+    auto single = settled;
+    single.excitation->settlePeriods = 0;
+    single.excitation->periods = 1;
+    CHECK(makeRecord(single).levels.empty());  // that of a single period without one is a take without periods
+}
+
 TEST_CASE("A record without periods is cut into windows of which a third is held out", "[record]")
 {
     auto measured = take(1, 0.0);

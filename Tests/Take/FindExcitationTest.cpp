@@ -7,8 +7,6 @@
 
 #include <cmath>
 #include <random>
-#include <utility>
-#include <vector>
 
 using namespace excursion;
 
@@ -149,30 +147,4 @@ TEST_CASE("Noise, silence and records that are too short have no excitation")
     auto plan = planExcitation(options(Grid::full, Shape::white));
     plan.channels[0].samples.pop_back();
     CHECK_THROWS_AS(findLines(plan.input().samples, *plan.excitation), Error);
-}
-
-TEST_CASE("Of periods that nothing settled before, the first is settling")
-{
-    Measurement take;
-    take.sampleRate = 48000.0;
-    take.excitation = Excitation {
-        .period = 8, .settlePeriods = 0, .periods = 3, .realizations = 1, .levels = {1.0}, .lines = {1}};
-    take.channels = {{Quantity::voltage, "V", 1.0, std::vector<double>(24, 0.5)}};
-    const auto samples = take.excitation->totalSamples();
-    completeExcitation(take);
-    CHECK(take.excitation->settlePeriods == 1);
-    CHECK(take.excitation->periods == 2);
-    CHECK(take.excitation->totalSamples() == samples);
-    take.excitation->settlePeriods = 0;
-    take.excitation->periods = 2;
-    completeExcitation(take);
-    CHECK(take.excitation->settlePeriods == 1);
-    CHECK(take.excitation->periods == 1);
-    for (const auto& [settling, periods] : {std::pair {0, 1}, {1, 2}, {2, 1}}) {  // these stay
-        take.excitation->settlePeriods = settling;
-        take.excitation->periods = periods;
-        completeExcitation(take);
-        CHECK(take.excitation->settlePeriods == settling);
-        CHECK(take.excitation->periods == periods);
-    }
 }

@@ -154,6 +154,15 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     record.leadIn = simulated * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
+/// The first of periods that nothing settled before as a settling one: after a jump it is another one. A take that was
+/// steady from its begin loses little.
+Measurement withSettling(Measurement take)
+{
+    take.excitation->settlePeriods = 1;
+    --take.excitation->periods;
+    return take;
+}
+
 /// A take without periods at a rate that its band needs, or as it is.
 Measurement thinned(Measurement take, double bandHigh)
 {
@@ -230,6 +239,8 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The take cannot be prepared: " + reason + ".");
+    if (take.excitation && take.excitation->settlePeriods == 0 && take.excitation->periods > 1)
+        return makeRecord(withSettling(take), options);
     Record record;
     record.sampleRate = take.sampleRate;
     record.driver = take.driver;

@@ -25,7 +25,8 @@ struct RecordOptions {
 };
 
 /// Cuts a take into the sections that models are fitted to and compared with. Lines that its excitation does not name
-/// are not looked for (completeExcitation() finds them). A take without periods is cut into windows, at a lower rate
+/// are not looked for (completeExcitation() finds them). Of periods without
+/// a settling one the first is taken for it. A take without periods is cut into windows, at a lower rate
 /// where the band that it drives (DrivenBand.h) leaves room.
 /// Throws Error (data) if the take has no output channel or is too short, or states a period in which nothing repeats.
 Record makeRecord(const AveragedPeriods&, const RecordOptions& = {});

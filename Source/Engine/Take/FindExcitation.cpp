@@ -286,10 +286,6 @@ void completeExcitation(Measurement& measurement)
         measurement.excitation = findExcitation(input, measurement.sampleRate);
     else if (measurement.excitation->lines.empty())
         measurement.excitation->lines = findLines(input, *measurement.excitation);
-    if (auto& e = measurement.excitation; e && e->settlePeriods == 0 && e->periods > 1) {
-        e->settlePeriods = 1;
-        --e->periods;
-    }
 }
 
 }  // namespace excursion

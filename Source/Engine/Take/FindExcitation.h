@@ -33,9 +33,7 @@ std::optional<Excitation> findExcitation(std::span<const double> input, double s
 int findPeriod(std::span<const double> input);
 
 /// The take with its excitation completed: the lines found where they are missing, all of it where it is absent
-/// and can be told (see findExcitation). Of several periods that nothing settled before, the first is taken for
-/// settling: after a jump it is another one. Of two such periods one is left, which tells no noise. Apart from that,
-/// what is there is not touched.
+/// and can be told (see findExcitation). What is there is not touched.
 void completeExcitation(Measurement&);
 
 }  // namespace excursion
