@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Products of small matrices, laid out for speed, against plain ones.
+#include "Engine/Numerics/Gram.h"
 #include "Engine/Numerics/TallProduct.h"
 #include "Engine/Numerics/TiledProduct.h"
 
@@ -81,4 +82,14 @@ TEST_CASE("A tall product adds to the rows that are wanted, and to no others")
                     CHECK(Eigen::Map<const MatrixXd>(sum.get(), rows, columns) == expected);
                 }
             }
+}
+
+TEST_CASE("A Gram matrix is the plain one, whatever its size")
+{
+    for (const Index rows : {0, 1, 3, 4, 7, 64, 511, 512, 1030})
+        for (const Index columns : {0, 1, 2, 3, 4, 5, 8, 13, 30}) {
+            const MatrixXd J = whole(rows, columns, 4);
+            CAPTURE(rows, columns);
+            CHECK(gram(J) == MatrixXd(J.transpose() * J));
+        }
 }

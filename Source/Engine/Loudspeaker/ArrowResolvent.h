@@ -81,6 +81,23 @@ public:
         return inOrder(y).cwiseProduct(units_);
     }
 
+    /// The same of many columns.
+    Eigen::MatrixXcd columns(const Eigen::MatrixXcd& b) const
+    {
+        Eigen::MatrixXcd y(b.rows(), b.cols()), z(b.rows(), b.cols());
+        y.topRows(core).noalias() = back_.lazyProduct(b.bottomRows(b.rows() - core));
+        y.topRows(core) = (core_ * (b.topRows(core) + y.topRows(core))).eval();
+        auto memories = y.bottomRows(b.rows() - core);
+        memories.topRows(singles_) = own_.asDiagonal() * b.middleRows(core, singles_);
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+            y.middleRows(groups_[g].first, groups_[g].size).noalias() = solved_[g].lazyProduct(
+                b.middleRows(groups_[g].first, groups_[g].size));
+        memories.noalias() += forth_.lazyProduct(y.topRows(core));
+        for (std::size_t k = 0; k < order_.size(); ++k)
+            z.row(order_[k]) = y.row(static_cast<Eigen::Index>(k)) * units_[order_[k]];
+        return z;
+    }
+
     /// c (s I - A)^-1, as a column.
     Eigen::VectorXcd row(const Eigen::VectorXcd& c) const
     {

@@ -53,6 +53,35 @@ std::map<double, std::vector<Share>> linesOf(const Record& record, const std::ve
     return lines;
 }
 
+/// A parameter that moves the linear part: dA and dB by it, in the form that ArrowResolvent::columns() needs.
+struct Mover {
+    Eigen::Index parameter;
+    struct Entry {
+        Eigen::Index row, from;  ///< `from` in the order of the states
+        double value;
+    };
+    std::vector<Entry> byState;
+    Eigen::VectorXcd byInput;
+};
+
+std::vector<Mover> moversOf(const SmallSignal& linear, const ArrowResolvent& resolvent)
+{
+    std::vector<Mover> movers;
+    for (std::size_t p = 0; p < linear.dA.size(); ++p) {
+        if (linear.dA[p].isZero(0.0) && linear.dB[p].isZero(0.0))
+            continue;
+        Mover mover {static_cast<Eigen::Index>(p), {}, resolvent.turnedRight(linear.dB[p].cast<Complex>())};
+        for (Eigen::Index from = 0; from < linear.dA[p].cols(); ++from) {
+            const auto column = resolvent.turnedRight(linear.dA[p].col(from).cast<Complex>());
+            for (Eigen::Index row = 0; row < column.size(); ++row)
+                if (column[row] != 0.0)
+                    mover.byState.push_back({row, from, column[row].real()});
+        }
+        movers.push_back(std::move(mover));
+    }
+    return movers;
+}
+
 /// Puts the memories of the laws where the sections have brought them.
 /// @param spectra  [section of the record][i, x or v], of the linear part; empty where that is not known
 void startMemories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
@@ -146,27 +175,62 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
         for (const auto s : heard)
             if (const auto& section = record.sections[s]; section.periodic)
                 spectra[s].fill(std::vector<Complex>(section.window / 2 + 1, 0.0));
-    ArrowResolvent resolvent(linear.A);
-    const Eigen::VectorXcd B = resolvent.turnedRight(linear.B.cast<Complex>());
-    Eigen::MatrixXcd gradient(n, P);
-    for (const auto& [frequency, shares] : linesOf(record, heard, leadIn)) {
-        resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
-        const Eigen::VectorXcd z = resolvent.column(B);
-        for (Eigen::Index p = 0; p < P; ++p)
-            gradient.col(p) = resolvent.column(resolvent.turnedRight(linear.dA[static_cast<std::size_t>(p)] * z
-                                                                     + linear.dB[static_cast<std::size_t>(p)]));
-        for (const auto& share : shares) {
-            if (remembers)
-                for (std::size_t q = 0; q < 3; ++q)
-                    spectra[share.section][q][share.line] = share.input * z[static_cast<Eigen::Index>(q)];
-            const auto s = places[share.section];
-            if (s == states.size())
-                continue;
-            states[s].value += (share.weight * z).real();
-            if (withGradient)
-                states[s].gradient += (share.weight * gradient).real();
+    const ArrowResolvent atRest(linear.A);
+    const Eigen::VectorXcd B = atRest.turnedRight(linear.B.cast<Complex>());
+    const auto movers = moversOf(linear, atRest);
+    // Sums of as many parts as there are never more threads, so that the result does not depend on their number.
+    constexpr std::size_t parts = 8;
+    const auto lines = linesOf(record, heard, leadIn);
+    std::vector<const std::pair<const double, std::vector<Share>>*> inOrder;
+    for (const auto& line : lines)
+        inOrder.push_back(&line);
+    std::vector<std::vector<StartState>> sums(parts, std::vector<StartState>(states.size()));
+    inParallel(parts, threads, {}, [&](std::size_t part) {
+        auto& own = sums[part];
+        for (std::size_t s = 0; s < own.size(); ++s)
+            if (states[s].value.size() > 0) {
+                own[s].value = Eigen::VectorXd::Zero(n);
+                if (withGradient)
+                    own[s].gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(movers.size()));
+            }
+        auto resolvent = atRest;
+        Eigen::MatrixXcd right(n, static_cast<Eigen::Index>(movers.size())), gradient;
+        for (std::size_t k = inOrder.size() * part / parts; k < inOrder.size() * (part + 1) / parts; ++k) {
+            const auto& [frequency, shares] = *inOrder[k];
+            resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
+            const Eigen::VectorXcd z = resolvent.column(B);
+            if (withGradient) {
+                for (std::size_t p = 0; p < movers.size(); ++p) {
+                    auto column = right.col(static_cast<Eigen::Index>(p));
+                    column = movers[p].byInput;
+                    for (const auto& [row, from, value] : movers[p].byState)
+                        column[row] += value * z[from];
+                }
+                gradient = resolvent.columns(right);
+            }
+            for (const auto& share : shares) {
+                if (remembers)
+                    for (std::size_t q = 0; q < 3; ++q)
+                        spectra[share.section][q][share.line] = share.input * z[static_cast<Eigen::Index>(q)];
+                const auto s = places[share.section];
+                if (s == own.size())
+                    continue;
+                own[s].value += (share.weight * z).real();
+                if (withGradient)
+                    own[s].gradient += share.weight.real() * gradient.real() - share.weight.imag() * gradient.imag();
+            }
         }
-    }
+        return true;
+    });
+    for (const auto& own : sums)
+        for (std::size_t s = 0; s < own.size(); ++s)
+            if (own[s].value.size() > 0) {
+                states[s].value += own[s].value;
+                if (withGradient)
+                    for (std::size_t p = 0; p < movers.size(); ++p)
+                        states[s].gradient.col(movers[p].parameter) += own[s].gradient.col(
+                            static_cast<Eigen::Index>(p));
+            }
     if (remembers)
         startMemories(model, record, sections, leadIn, withGradient, threads, spectra, states);
     return states;

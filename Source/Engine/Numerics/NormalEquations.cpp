@@ -2,6 +2,7 @@
 #include "Engine/Numerics/NormalEquations.h"
 
 #include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/Gram.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,7 @@ NormalEquations::NormalEquations(const Eigen::VectorXd& r) : cost(r.squaredNorm(
 
 void NormalEquations::differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r)
 {
-    N.setZero(J.cols(), J.cols());
-    N.selfadjointView<Eigen::Upper>().rankUpdate(J.transpose());
-    N.triangularView<Eigen::StrictlyLower>() = N.transpose();
+    N = gram(J);
     g.noalias() = J.transpose() * r;
 }
 
