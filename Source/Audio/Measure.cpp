@@ -122,6 +122,9 @@ std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
                + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
                + " dB below full level: look at the amplifier, the cables, and which output and inputs are used.";
     case Ending::Kind::unseen:
+        if (ending.stage == Stage::playing)
+            return "The " + inputText(watched) + " has a limit and fell silent " + momentOf(ending)
+                   + ": look at its sensor and cable.";
         return "The " + inputText(watched)
                + " has a limit and does not answer what is played, though the rise has come to "
                + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))

@@ -8,15 +8,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace excursion::audio {
 namespace {
 
-constexpr double riseDb = 40.0;      // from quiet to full
-constexpr double holdSeconds = 0.2;  // in full, before the period that is judged: devices deliver late
-constexpr double judgedDb = 12.0;    // below full, from where on something must be heard
-constexpr double heardRatio = 2.0;   // of the rms in silence
-constexpr double seenRatio = 1.2;    // the same, of an input with a limit, which may be a quiet sensor
+constexpr double riseDb = 40.0;       // from quiet to full
+constexpr double holdSeconds = 0.2;   // in full, before the period that is judged: devices deliver late
+constexpr double judgedDb = 12.0;     // below full, from where on something must be heard
+constexpr double heardRatio = 2.0;    // of the rms in silence
+constexpr double seenRatio = 1.2;     // the same, of an input with a limit, which may be a quiet sensor
+constexpr double certainRatio = 4.0;  // the same, that by the rise is expected of an input that must not be silent
 constexpr double frozenSeconds = 0.5;
 constexpr float clippingAt = 0.9999f;  // the largest sample of 16 bits is 0.99997
 
@@ -96,8 +98,11 @@ Procedure::Procedure(ProcedureOptions options)
       frame_(static_cast<std::size_t>(options_.recorded)),
       watches_(options_.inputs.size())
 {
-    if (riseLength_ > 0)
-        heard_.assign(watches_.size(), 0.0);
+    if (riseLength_ == 0)
+        return;
+    heard_.assign(watches_.size(), 0.0);
+    for (const double s : options_.loudest)
+        loudestPower_ += s * s / static_cast<double>(options_.loudest.size());
 }
 
 std::size_t Procedure::lengthOf(Stage stage) const
@@ -237,18 +242,47 @@ void Procedure::closeListening()
     }
 }
 
+/// The rms of an input over a period, over that in silence.
+double Procedure::closeWindow(std::size_t watched)
+{
+    auto& watch = watches_[watched];
+    const auto count = static_cast<double>(options_.loudest.size());
+    const double mean = watch.windowSum / count,  // where a sensor has drifted to
+        power = std::max(0.0, watch.window / count - mean * mean);
+    watch.window = watch.windowSum = 0.0;
+    // as far as one sample of 24 bits, where the silence was perfect
+    return std::sqrt(power / std::max(watch.power, 1e-14));
+}
+
+void Procedure::emptyWindows()
+{
+    for (auto& watch : watches_) {
+        watch.window = watch.windowSum = 0.0;
+        watch.silent = false;
+    }
+    soundSquares_ = soundBefore_ = 0.0;
+}
+
+/// Judges as many samples of the sound as a period has. What is heard may be of the window before: devices deliver
+/// late.
+void Procedure::closePlayed()
+{
+    const double power = std::exchange(soundSquares_, 0.0) / static_cast<double>(options_.loudest.size()),
+                 least = std::sqrt(std::min(power, std::exchange(soundBefore_, power)) / loudestPower_);
+    for (std::size_t k = 0; k < watches_.size(); ++k) {
+        const bool silent = closeWindow(k) <= seenRatio && heard_[k] * least > certainRatio;
+        if (std::exchange(watches_[k].silent, silent) && silent && options_.inputs[k].limit)
+            end(Ending::Kind::unseen, k);
+    }
+}
+
 /// Judges a period of the rise.
 void Procedure::closeWindow()
 {
     bool any = false;
     for (std::size_t k = 0; k < watches_.size(); ++k) {
-        const auto count = static_cast<double>(options_.loudest.size());
-        const double mean = watches_[k].windowSum / count,  // where a sensor has drifted to
-            power = std::max(0.0, watches_[k].window / count - mean * mean);
-        // as far as one sample of 24 bits, where the silence was perfect
-        heard_[k] = std::sqrt(power / std::max(watches_[k].power, 1e-14));
+        heard_[k] = closeWindow(k);
         any = any || heard_[k] > heardRatio;
-        watches_[k].window = watches_[k].windowSum = 0.0;
     }
     if (windowGain_ <= std::pow(10.0, -judgedDb / 20.0))
         return;
@@ -279,20 +313,27 @@ void Procedure::advance()
             if (at_ >= options_.loudest.size())
                 closeWindow();
             else
-                for (auto& watch : watches_)
-                    watch.window = watch.windowSum = 0.0;
+                emptyWindows();
         }
+    }
+    if (now_ == Stage::playing && loudestPower_ > 0.0) {
+        const double s = options_.sound[at_ - 1];
+        soundSquares_ += s * s;
+        if (at_ % options_.loudest.size() == 0)
+            closePlayed();
     }
     while (now_ != Stage::ended && at_ >= lengthOf(now_)) {
         switch (now_) {
         case Stage::listening:
             closeListening();
             enter(riseLength_ > 0 ? Stage::rising : Stage::pausing);
-            for (auto& watch : watches_)
-                watch.window = watch.windowSum = 0.0;
+            emptyWindows();
             break;
         case Stage::rising: enter(Stage::pausing); break;
-        case Stage::pausing: enter(Stage::playing); break;
+        case Stage::pausing:
+            enter(Stage::playing);
+            emptyWindows();
+            break;
         case Stage::playing: enter(Stage::trailing); break;
         case Stage::trailing:
             ending_.kind = Ending::Kind::complete;

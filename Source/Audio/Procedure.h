@@ -76,7 +76,10 @@ struct ProcedureOptions {
 ///  - in the rise, within 12 dB of its end, when no input is twice as loud (rms over a period) as in silence, or one
 ///  with
 ///    a limit is not 1.2 times as loud;
-///  - when samples are lost while the inputs are recorded, or no input moves for half a second of sound.
+///  - when samples are lost while the inputs are recorded, or no input moves for half a second of sound;
+///  - while the sound is played, when an input with a limit that was heard in the rise has fallen silent: over two
+///  periods
+///    in a row it is not 1.2 times as loud as in silence, where by the rise it had to be four times as loud.
 ///
 /// process() is for the thread of the device: it neither allocates nor locks nor calls the system.
 class Procedure : public Client {
@@ -114,6 +117,7 @@ private:
         double offset = 0.0, power = 0.0;  ///< sums while listening, then mean and variance
         double window = 0.0;               ///< sum of squares of the present window
         double windowSum = 0.0;
+        bool silent = false;  ///< in the window before, though it should not
         float last = 0.0f;
         std::atomic<float> peak {0.0f};
         std::atomic<bool> clipped {false};
@@ -127,6 +131,9 @@ private:
     void record(const Block&, std::size_t frame);
     void closeListening();
     void closeWindow();
+    double closeWindow(std::size_t watched);
+    void closePlayed();
+    void emptyWindows();
     void advance();
     void enter(Stage);
     void end(Ending::Kind, std::size_t watched = 0, double value = 0.0);
@@ -137,6 +144,9 @@ private:
     std::vector<float> frame_;
     std::vector<Watch> watches_;
     std::vector<double> heard_;
+    double loudestPower_ = 0.0;  ///< mean square of the loudest period
+    double soundSquares_ = 0.0;  ///< sum over the present window
+    double soundBefore_ = 0.0;   ///< mean square in the window before it
 
     std::atomic<Stage> stage_ {Stage::listening};
     Stage now_ = Stage::listening, under_ = Stage::listening;  ///< under_: what is faded

@@ -343,6 +343,38 @@ TEST_CASE("An input that has a limit must answer what is played", "[audio]")
     CHECK(free.procedure.ending().kind == Ending::Kind::complete);
 }
 
+TEST_CASE("An input that has a limit must not fall silent while the plan is played", "[audio]")
+{
+    auto options = someOptions();
+    for (int n = 0; n < 20; ++n)  // of two levels; the quiet one drowns
+        for (const float s : options.loudest)
+            options.sound.push_back(n / 4 % 2 == 0 ? s : 1e-4f * s);
+    options.inputs.push_back({1, Quantity::displacement, 1e-3, 0.9e-3});
+    options.recorded = 2;
+    const auto play = [&](std::size_t dies) {
+        Bench bench(options);
+        bench.second = [&bench, dies](float x) {
+            const float noise = 1e-4f * static_cast<float>(bench.normal(bench.random));
+            return noise + (bench.played.size() < dies ? 0.05f * x : 0.0f);
+        };
+        bench.run();
+        return bench.procedure.ending();
+    };
+    CHECK(play(1000000).kind == Ending::Kind::complete);
+    const auto at = listening + rising + pausing;
+    for (const auto dies : {at + 100, at + 6 * period, at + 13 * period + 300}) {
+        const auto ending = play(dies);
+        CAPTURE(dies, ending.seconds);
+        REQUIRE(ending.kind == Ending::Kind::unseen);
+        CHECK(ending.watched == 1);
+        CHECK(ending.stage == Stage::playing);
+        CHECK(ending.seconds * rate < static_cast<double>(dies - at + 4 * period));
+        CHECK_THAT(sentenceOf(ending, options), Catch::Contains("fell silent") && Catch::Contains("displacement"));
+    }
+    options.inputs[1].limit.reset();
+    CHECK(play(at + 100).kind == Ending::Kind::complete);
+}
+
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")
 {
     auto options = someOptions();
