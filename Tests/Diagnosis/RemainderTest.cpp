@@ -141,6 +141,19 @@ TEST_CASE("The shape of the missing force says what it looks like", "[remainder]
     CHECK_THAT(words.front(), Catch::Contains("a force with a memory"));
 }
 
+TEST_CASE("Noise looks like nothing", "[remainder]")
+{
+    auto comparison = oneChannel();
+    comparison.residuals = {curveOf(
+        "force", "x", -20.0, [](double) { return 0.01; }, 0.5)};
+    auto& channel = comparison.channels.front();
+    channel.total = {-60.0, -60.0, 1.0};
+    channel.byLevel = {{-60.0, -60.0, 1.0}, {-60.0, -60.0, 1.0}};
+    CHECK(remainderOf(comparison).looksLike.empty());
+    channel.total = {-40.0, -60.0, 100.0};
+    CHECK_FALSE(remainderOf(comparison).looksLike.empty());
+}
+
 TEST_CASE("What is left survives its document, and older files have none", "[remainder]")
 {
     auto comparison = oneChannel();

@@ -160,6 +160,17 @@ std::string inWords(const ErrorKinds& kinds)
     return text;
 }
 
+bool isNoise(const Comparison& comparison)
+{
+    // what only the loudest level shows would drown among the quiet ones
+    const auto onlyNoise = [](const ChannelComparison& channel) {
+        return isNoise(channel.total)
+               && std::all_of(channel.byLevel.begin(), channel.byLevel.end(), [](const auto& e) { return isNoise(e); })
+               && !channel.wanderDb;
+    };
+    return comparison.noiseKnown && std::all_of(comparison.channels.begin(), comparison.channels.end(), onlyNoise);
+}
+
 ErrorByChannel errorByChannel(const Comparison& comparison)
 {
     ErrorByChannel errors;

@@ -56,6 +56,9 @@ struct Comparison {
     bool validated = false;  ///< on sections that no fit saw
 };
 
+/// Whether all that is left is noise, at every level.
+bool isNoise(const Comparison&);
+
 /// The error of each channel over all levels.
 ErrorByChannel errorByChannel(const Comparison&);
 

@@ -10,25 +10,10 @@
 namespace excursion {
 namespace {
 
-/// At every level: what only the loudest shows would drown among the quiet ones.
-bool isNoise(const ChannelComparison& channel)
-{
-    return isNoise(channel.total)
-           && std::all_of(channel.byLevel.begin(), channel.byLevel.end(), [](const auto& e) { return isNoise(e); })
-           && !channel.wanderDb;
-}
-
 /// None is where a take has no periods, nor of a frequency response.
 bool isVoted(const Vote& vote) { return vote.uniqueDb != 0.0 || vote.inconsistency != 0.0 || vote.byLevel != 0.0; }
 
 }  // namespace
-
-bool isNoise(const Comparison& comparison)
-{
-    return comparison.noiseKnown
-           && std::all_of(comparison.channels.begin(), comparison.channels.end(),
-                          [](const auto& c) { return isNoise(c); });
-}
 
 void putInOrder(std::vector<RankedEffect>& ranking, const Excess& excess)
 {

@@ -10,9 +10,6 @@
 
 namespace excursion {
 
-/// Whether all that is left is noise.
-bool isNoise(const Comparison&);
-
 /// What of a mean squared residual is not noise; never quite zero, as two models at the noise are equally good.
 class Excess {
 public:

@@ -178,7 +178,7 @@ Remainder remainderOf(const Comparison& comparison)
         }
     std::stable_sort(remainder.places.begin(), remainder.places.end(),
                      [](const auto& a, const auto& b) { return a.db > b.db; });
-    if (!remainder.channels.empty())
+    if (!remainder.channels.empty() && !isNoise(comparison))  // noise looks like anything
         remainder.looksLike = likenessOf(comparison, remainder);
     return remainder;
 }

@@ -94,10 +94,11 @@ Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& who
 
 /// How often an effect of a whole is there, by its merit: the share of what would be left without it that it explains,
 /// as far as that is the same at all levels. Counted on virtual loudspeakers (Docs/Method.md): what a whole keeps is
-/// nearly always there, whatever its merit.
-double confidenceOf(const Vote& vote)
+/// nearly always there, whatever its merit; but beside something unknown that has little may stand for a part of it.
+double confidenceOf(const Vote& vote, bool besideUnknown)
 {
-    constexpr double least = 0.90, most = 0.985;
+    const double least = besideUnknown ? 0.60 : 0.90;
+    constexpr double most = 0.985;
     constexpr double untold = 0.3;  // of one level
     const double inconsistency = std::isnan(vote.inconsistency) ? untold : vote.inconsistency;
     const double merit = std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0))
@@ -106,7 +107,9 @@ double confidenceOf(const Vote& vote)
 }
 
 /// What is said of a rung whose next effect is known.
-Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Score>& scores, const Whole& whole)
+/// @param besideUnknown  the whole leaves more than noise
+Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Score>& scores, const Whole& whole,
+                      bool besideUnknown)
 {
     Diagnosis diagnosis;
     diagnosis.verdict = Verdict::missingEffect;
@@ -119,7 +122,7 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
         if (const auto needed = whole.votes.find(entry.effect); needed != whole.votes.end()) {
             entry.vote = needed->second;
             entry.significant = true;
-            entry.confidence = confidenceOf(entry.vote);
+            entry.confidence = confidenceOf(entry.vote, besideUnknown);
             ++others;
         }
         if (entry.effect == next.added) {
@@ -155,6 +158,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
     const auto reached = tryCompare(whole.model, record, {whole.fit.substeps, true}, progress.silent());
     if (!reached)
         return {};
+    const bool besideUnknown = record.noiseKnown && !(reached->chiSquaredPerValue < nearNoise);
     const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
     ScoreOptions test;
     test.threads = options.fit.threads;
@@ -192,7 +196,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
         }
         if (next.added.empty())
             next = atRest(rung, scores, whole);
-        rung.diagnosis = diagnosisOf(rung, next, scores, whole);
+        rung.diagnosis = diagnosisOf(rung, next, scores, whole, besideUnknown);
         rungs.push_back(std::move(next));
     }
     return rungs;
