@@ -80,11 +80,11 @@ TEST_CASE("A law that gives coefficients back needs no other fit", "[diagnosis]"
     CHECK(high.summary.chiSquaredPerValue == Approx(refitted.summary.chiSquaredPerValue).epsilon(1e-5));
 }
 
-TEST_CASE("A law keeps coefficients that a simulation misses, whatever the covariance says", "[diagnosis]")
+TEST_CASE("A law keeps coefficients that a simulation misses, whatever the curvature says", "[diagnosis]")
 {
     Bent strong("force-factor", 10, 0.6);
     REQUIRE(tooHigh(strong.model).empty());
-    strong.model.covariance *= 1e8;  // as if the fit knew nothing
+    strong.model.inverseCurvature *= 1e8;  // as if the fit knew nothing
     REQUIRE(tooHigh(strong.model) == std::vector<std::size_t> {1});
     const auto before = strong.model;
     lowerAsItPays(strong.model, strong.summary, strong.record, estimationSections(strong.record), strong.options);

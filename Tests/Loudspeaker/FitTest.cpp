@@ -96,6 +96,30 @@ TEST_CASE("The standard errors are those of repeated takes", "[fit][slow]")
     }
 }
 
+TEST_CASE("Noise of the input counts once, though all channels show it", "[fit][slow]")
+{
+    constexpr int takes = 30;
+    std::map<std::string, double> square;
+    for (int n = 0; n < takes; ++n) {
+        auto setup = smallSetup();
+        setup.excitation.periods = 4;
+        setup.noiseDb = -90.0;
+        setup.channelNoiseDb[Quantity::voltage] = -60.0;
+        setup.seed = static_cast<std::uint64_t>(100 + n);
+        const auto model = fitLinear(bench::measure(bench::Loudspeaker {}, setup)).model;
+        for (const auto& [name, value] : truths()) {
+            const auto& p = model.baseParameter(name);
+            square[name] += std::pow((p.value - value) / p.standardError, 2);
+        }
+    }
+    for (const auto& [name, sum] : square) {
+        INFO(name << ": " << std::sqrt(sum / takes) << " standard errors, rms");
+        // 99.7 % of chi-square with thirty degrees of freedom, either way
+        CHECK(sum < 54.5);
+        CHECK(sum > 12.9);
+    }
+}
+
 TEST_CASE("A law that the model lacks widens the errors beyond the noise that it looks like", "[fit]")
 {
     bench::Loudspeaker truth;
@@ -106,7 +130,7 @@ TEST_CASE("A law that the model lacks widens the errors beyond the noise that it
     CHECK(summary.chiSquaredPerValue > 2.0);
     const auto K = firstParameterOf(model, 0) + 5;
     REQUIRE(parametersOf(model)[static_cast<std::size_t>(K)]->name == "K");
-    const double asNoise = std::sqrt(model.covariance(K, K)), told = model.baseParameter("K").standardError;
+    const double asNoise = std::sqrt(model.inverseCurvature(K, K)), told = model.baseParameter("K").standardError;
     INFO("K is " << model.baseParameter("K").value << " +- " << told << ", as noise " << asNoise);
     CHECK(told > 1.5 * asNoise);
     CHECK(widenedCovariance(model)(K, K) == Approx(told * told));

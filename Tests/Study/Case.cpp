@@ -58,14 +58,17 @@ std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& 
 {
     std::vector<LawCoverage> result;
     for (const auto& law : laws(model)) {
-        LawCoverage covered {law.effectId, outcome.hides(law.effectId), 0, 0};
+        LawCoverage covered {law.effectId, outcome.hides(law.effectId)};
         for (std::size_t n = 0; n < law.argument.size(); ++n) {
             if (std::abs(law.argument[n]) > 0.9 * law.argument.back())
                 continue;
             ++covered.points;
-            if (std::abs(law.value[n] - truth(speaker, law, law.argument[n])) <= law.halfWidth[n])
+            const double error = std::abs(law.value[n] - truth(speaker, law, law.argument[n]));
+            if (error <= law.halfWidth[n])
                 ++covered.inside;
+            covered.spread += std::pow(1.96 * error / law.halfWidth[n], 2);
         }
+        covered.spread = std::sqrt(covered.spread / std::max(1, covered.points));
         result.push_back(covered);
     }
     return result;

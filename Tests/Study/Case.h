@@ -28,6 +28,7 @@ struct LawCoverage {
     std::string effect;
     bool hidden = false;  ///< the effect is really there; else the truth is a constant
     int points = 0, inside = 0;
+    double spread = 0.0;  ///< rms of its errors at the points, in standard errors
 };
 
 struct Outcome {

@@ -149,7 +149,7 @@ std::string line(const Outcome& o)
         result += ", withdrawn " + joined(o.withdrawn);
     result += formatted(", %s, final %.2f dB", o.verdict.c_str(), o.finalDb);
     for (const auto& law : o.laws)
-        result += formatted(", %s %d/%d in band", law.effect.c_str(), law.inside, law.points);
+        result += formatted(", %s %d/%d in band (%.2g)", law.effect.c_str(), law.inside, law.points, law.spread);
     return result + formatted(", %.1f s = %.1f x", o.improveSeconds, o.improveSeconds / o.takeSeconds);
 }
 

@@ -55,6 +55,7 @@ Model withMotion(Model model, double factor)
     if (model.covariance.size() > 0) {
         const Eigen::Map<const Eigen::VectorXd> scale(by.data(), static_cast<Eigen::Index>(by.size()));
         model.covariance = (scale.asDiagonal() * model.covariance * scale.asDiagonal()).eval();
+        model.inverseCurvature.resize(0, 0);
     }
     return model;
 }

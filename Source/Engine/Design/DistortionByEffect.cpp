@@ -168,6 +168,7 @@ public:
             s.deviation.assign(record_.channels.size(), std::vector<double>(s.window / 2 + 1, 1.0));
             s.silentDeviation.clear();
             s.inputVariance.clear();
+            s.inputNoise.clear();
         }
     }
 

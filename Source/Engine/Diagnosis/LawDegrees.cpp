@@ -80,19 +80,29 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
     for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(all.size()); ++j)
         if (std::find(highest.begin(), highest.end(), j) == highest.end())
             rest.push_back(j);
-    const auto& C = model.covariance;
+    const auto& C = inverseCurvature(model);
     std::vector<Eigen::Index> told = highest;
     std::erase_if(told, [&](Eigen::Index j) { return C(j, j) == 0.0; });
     const Eigen::VectorXd theta = parameterVector(model);
     const Eigen::MatrixXd C_rb = C(rest, told);
     const Eigen::LDLT<Eigen::MatrixXd> C_bb(Eigen::MatrixXd(C(told, told)));
-    const Eigen::VectorXd moved = Eigen::VectorXd(theta(rest)) - C_rb * C_bb.solve(Eigen::VectorXd(theta(told)));
-    constexpr double leastShare = 1e-12;
-    lower.covariance = Eigen::MatrixXd(C(rest, rest)) - C_rb * C_bb.solve(C_rb.transpose());
-    for (Eigen::Index j = 0; j < lower.covariance.rows(); ++j)
-        if (const double before = C(rest[static_cast<std::size_t>(j)], rest[static_cast<std::size_t>(j)]);
-            lower.covariance(j, j) < leastShare * before)  // of rounding
-            lower.covariance(j, j) = leastShare * before;
+    // theta_r - follows theta_b
+    const Eigen::MatrixXd follows = C_bb.solve(C_rb.transpose()).transpose();
+    const Eigen::VectorXd moved = Eigen::VectorXd(theta(rest)) - follows * Eigen::VectorXd(theta(told));
+    constexpr double leastShare = 1e-12;  // below which a variance is of rounding
+    const auto keepAbove = [&](Eigen::MatrixXd& variance, const Eigen::MatrixXd& before) {
+        for (Eigen::Index j = 0; j < variance.rows(); ++j)
+            variance(j, j) = std::max(
+                variance(j, j),
+                leastShare * before(rest[static_cast<std::size_t>(j)], rest[static_cast<std::size_t>(j)]));
+    };
+    const auto& S = model.covariance;
+    const Eigen::MatrixXd shared = S(rest, told) * follows.transpose();
+    lower.covariance = Eigen::MatrixXd(S(rest, rest)) - shared - shared.transpose()
+                       + follows * Eigen::MatrixXd(S(told, told)) * follows.transpose();
+    lower.inverseCurvature = Eigen::MatrixXd(C(rest, rest)) - follows * C_rb.transpose();
+    keepAbove(lower.covariance, S);
+    keepAbove(lower.inverseCurvature, C);
     const auto left = parametersOf(lower);
     for (std::size_t j = 0; j < left.size(); ++j) {
         const auto row = static_cast<Eigen::Index>(j);
@@ -100,10 +110,10 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
         const auto& before = *all[static_cast<std::size_t>(rest[j])];
         p.free = before.free;
         p.standardError = before.standardError;
-        if (!p.free || lower.covariance(row, row) == 0.0)  // not told by the fit
+        if (!p.free || lower.inverseCurvature(row, row) == 0.0)  // not told by the fit
             continue;
         p.value = std::clamp(moved[row], p.lower, p.upper);
-        p.standardError = before.standardError * std::sqrt(lower.covariance(row, row) / C(rest[j], rest[j]));
+        p.standardError = before.standardError * std::sqrt(lower.covariance(row, row) / S(rest[j], rest[j]));
     }
     return lower;
 }

@@ -22,8 +22,10 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
 bool speaksAgainst(const Model& higher, const Model& lower, const Record&, const FitOptions&);
 
 /// Law k without its highest coefficients theta_b, as many as a raise brings, and the other parameters theta_r where
-/// the covariance C of the last fit has the least cost then:
-///     theta_r <- theta_r - C_rb C_bb^-1 theta_b,   C_rr <- C_rr - C_rb C_bb^-1 C_br.
+/// the inverse curvature C of the last fit has the least cost then:
+///     theta_r <- theta_r - F theta_b,   C_rr <- C_rr - F C_br,   F = C_rb C_bb^-1,
+/// and its covariance S becomes that of this estimate,
+///     S_rr <- S_rr - F S_br - S_rb F^T + F S_bb F^T.
 /// No fit is needed: near its minimum the cost is a parabola. The model has the covariance of its fit, and the law more
 /// than `by` degrees.
 Model withLowerLaw(const Model&, std::size_t k, int by = degreesAtOnce);

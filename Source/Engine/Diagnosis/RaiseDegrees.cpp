@@ -96,11 +96,12 @@ std::vector<Eigen::Index> highestCoefficients(const Model& model, std::size_t k,
 double worthOfHighest(const Model& model, std::size_t k, int by)
 {
     auto highest = highestCoefficients(model, k, by);
-    std::erase_if(highest, [&](Eigen::Index j) { return model.covariance(j, j) == 0.0; });  // not told by the fit
+    const auto& bends = inverseCurvature(model);
+    std::erase_if(highest, [&](Eigen::Index j) { return bends(j, j) == 0.0; });  // not told by the fit
     if (highest.empty())
         return std::numeric_limits<double>::infinity();
     const Eigen::VectorXd theta = parameterVector(model)(highest);
-    const Eigen::MatrixXd C = model.covariance(highest, highest);
+    const Eigen::MatrixXd C = bends(highest, highest);
     return theta.dot(C.ldlt().solve(theta));
 }
 

@@ -26,7 +26,7 @@ std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&
 /// Places in parameterVector() of what law k has by its `by` highest degrees.
 std::vector<Eigen::Index> highestCoefficients(const Model&, std::size_t k, int by = degreesAtOnce);
 
-/// What those coefficients theta are worth at the model's last fit, by their block C of its covariance:
+/// What those coefficients theta are worth at the model's last fit, by their block C of its inverseCurvature():
 ///     theta^T C^-1 theta,
 /// by which the cost would rise without them, in units of the residuals' variance; infinite where the fit tells none.
 double worthOfHighest(const Model&, std::size_t k, int by = degreesAtOnce);

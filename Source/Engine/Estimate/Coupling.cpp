@@ -28,6 +28,8 @@ void takeOffHighPass(Record& record, std::size_t channel, double corner)
             for (auto* deviation : {&section.deviation, &section.silentDeviation})
                 if (!deviation->empty())
                     (*deviation)[channel][k] *= std::abs(inverse);
+            if (!section.inputNoise.empty())
+                section.inputNoise[channel][k] *= inverse;
         }
     }
 }

@@ -32,6 +32,9 @@ struct Section {
     std::vector<std::vector<double>> silentDeviation;
     /// [line], E|noise|^2 of the input's DFT; empty when unknown
     std::vector<double> inputVariance;
+    /// [channel][line], what noise of the input of one standard deviation makes of a channel. It is the same noise in
+    /// all of them, and a part of their deviations; empty until a model tells it (adapt())
+    std::vector<std::vector<std::complex<double>>> inputNoise;
     std::vector<int> excited;  ///< excited lines, if known
 };
 

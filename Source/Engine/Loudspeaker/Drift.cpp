@@ -121,6 +121,7 @@ Drift follow(Model before, const std::vector<std::string>& names, const Search& 
         }
         covariance(moved, moved) = Eigen::MatrixXd(drift.model.covariance(moved, moved));
         drift.model.covariance = std::move(covariance);
+        drift.model.inverseCurvature.resize(0, 0);
     }
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (!all[k]->free)

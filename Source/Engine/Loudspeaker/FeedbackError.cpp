@@ -31,6 +31,7 @@ public:
     SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const SectionFit* played)
     {
         SectionFit fit;
+        std::vector<Eigen::MatrixXd> slopes;
         fit.finite = true;
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             auto predicted = sum(c, fed_.voltage, fed_.force);
@@ -39,17 +40,21 @@ public:
             NormalEquations normal(r);
             fit.finite = fit.finite && std::isfinite(normal.cost);
             if (options.gradient && !active.empty()) {
-                const auto J = columns(c, active, heard);
+                auto J = columns(c, active, heard);
                 normal.differentiateBy(J, r);
                 fit.pull(residual_.pulls(J, r));
                 if (options.slopes)
                     fit.slopes.push_back(J.cast<float>());
+                if (options.shared)
+                    slopes.push_back(std::move(J));
             }
             fit.channels.push_back(std::move(normal));
             fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
             if (options.spectra)
                 fit.predicted.push_back(played ? played->predicted[c] : predicted);
         }
+        if (!slopes.empty())
+            fit.shared = residual_.shared(slopes);
         return fit;
     }
 

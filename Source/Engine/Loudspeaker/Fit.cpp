@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -32,10 +33,26 @@ double toldOf(const Parameter& p, double N)
 
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: their wild steps
 /// would hold up the others. Of an effect that is not at work yet nothing can be said: its shapes are kept.
-/// @param fits  of the model, when they had to be known and no parameter is left out; else none
-std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
+struct Told {
+    std::vector<Eigen::Index> every;   // free one
+    std::vector<Eigen::Index> places;  // among them, of those that are to be searched
+    Eigen::MatrixXd N, shared;         // of every one, by the data; empty where all are to be searched
+    std::vector<SectionFit> fits;      // of the model and those to be searched, when they had to be known
+
+    std::vector<Eigen::Index> active() const
+    {
+        std::vector<Eigen::Index> result;
+        for (const auto place : places)
+            result.push_back(every[static_cast<std::size_t>(place)]);
+        return result;
+    }
+};
+
+Told told(const Model& model, const ErrorOf& errorOf)
 {
-    auto active = freeParameters(model);
+    const auto active = freeParameters(model);
+    Told result {active, std::vector<Eigen::Index>(active.size()), {}, {}, {}};
+    std::iota(result.places.begin(), result.places.end(), Eigen::Index {0});
     const auto all = parametersOf(model);
     std::vector<bool> atWork;
     for (const auto& component : model.components)
@@ -46,23 +63,29 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
         return !p.strength && std::isfinite(p.prior) && atWork[static_cast<std::size_t>(k)];
     };
     if (std::none_of(active.begin(), active.end(), isShape))
-        return active;
+        return result;
+    auto& fits = result.fits;
     fits = errorOf(active, true);
     const auto sum = sumOf(fits);
     if (!sum || sum->N.size() == 0)
-        return active;
+        return result;
     constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
     const double variance = std::max(1.0, sum->cost / std::max(1.0, sum->rows));
-    std::vector<Eigen::Index> kept;
+    std::vector<Eigen::Index> kept;  // places
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto k = static_cast<Eigen::Index>(j);
         if (!isShape(active[j])
             || toldOf(*all[static_cast<std::size_t>(active[j])], sum->N(k, k)) > fewTimes * variance)
-            kept.push_back(active[j]);
+            kept.push_back(k);
     }
-    if (kept.size() < active.size())
-        fits.clear();
-    return kept;
+    if (kept.size() < active.size()) {
+        result.N = sum->N;
+        result.shared = sharedOf(fits);
+        for (auto& fit : fits)
+            fit.keepSlopes(kept);
+        result.places = std::move(kept);
+    }
+    return result;
 }
 
 SearchCoordinates coordinatesOf(Model& model, const std::vector<Eigen::Index>& active)
@@ -120,18 +143,28 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     return coordinates.now();
 }
 
-/// Standard errors where the residuals of the data, but not the priors, scatter as variance by `dispersion`:
-///     N^-1 (dispersion J^T J + scatter W) N^-1,   C = scatter N^-1,   N = J^T J + W,
-/// or those of C if that is no more. NaN where C has it.
-Eigen::VectorXd standardErrorsOf(const Eigen::MatrixXd& C, double scatter, const Eigen::MatrixXd& JtJ,
-                                 double dispersion)
+/// Covariance of an estimate from residuals that do not all scatter by themselves,
+///     N^-1 (max(dispersion, scatter) J^T J + scatter (S + W)) N^-1,   N = J^T J + W,
+/// with what channels share, S, and the curvature of priors, W. NaN where N^-1 has it.
+/// @param S  empty: nothing
+Eigen::MatrixXd sandwich(const Eigen::MatrixXd& JtJ, const Eigen::VectorXd& W, const Eigen::MatrixXd& S, double scatter,
+                         double dispersion)
 {
-    const Eigen::VectorXd variance = C.diagonal();
-    if (!(dispersion > scatter))
-        return variance.cwiseSqrt();
-    const Eigen::MatrixXd known = C.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
-    const double more = (dispersion - scatter) / (scatter * scatter);
-    return (variance + more * (known * JtJ).cwiseProduct(known).rowwise().sum()).cwiseSqrt();
+    constexpr double least = 1e-6;  // of a variance, below which it is of rounding
+    Eigen::MatrixXd N = JtJ;
+    N.diagonal() += W;
+    const auto inverse = covarianceOf(N, 1.0);
+    const Eigen::MatrixXd known = inverse.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
+    Eigen::MatrixXd more = std::max(0.0, dispersion - scatter) * JtJ;
+    if (S.size() > 0)
+        more += scatter * S;
+    Eigen::MatrixXd result = scatter * inverse + known * more * known;
+    result = (0.5 * (result + result.transpose())).eval();
+    result.diagonal() = result.diagonal().cwiseMax(least * scatter * inverse.diagonal());
+    for (Eigen::Index k = 0; k < result.rows(); ++k)
+        if (!std::isfinite(inverse(k, k)))
+            result(k, k) = std::numeric_limits<double>::quiet_NaN();
+    return result;
 }
 
 /// The search of the model's parameters for the least error.
@@ -145,8 +178,9 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
             parameter->value = std::clamp(parameter->value, parameter->lower, parameter->upper);
             leaveZero(*parameter);
         }
-    std::vector<SectionFit> atStart;
-    const auto active = telling(model, errorOf, atStart);
+    auto asked = told(model, errorOf);
+    const auto active = asked.active();
+    auto& atStart = asked.fits;
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
     auto coordinates = coordinatesOf(model, active);
@@ -157,6 +191,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         NormalEquations sum;     // by parameters
         Eigen::MatrixXd ofData;  // N without priors
         Eigen::MatrixXd pulls;   // of bands
+        Eigen::MatrixXd shared;
         bool onlyNoise = false;
     } last;                                                   // place with slopes
     double variance = 0.0;                                    // of the residuals at the start
@@ -176,7 +211,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         const Eigen::MatrixXd ofData = sum.N;
         addPrior(model, active, sum, variance);
         if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
-            last = {sum, ofData, pullsOf(fits, record, sections), onlyNoise};
+            last = {sum, ofData, pullsOf(fits, record, sections), sharedOf(fits), onlyNoise};
         }
         coordinates.convert(sum, variance);
         sum.held = heldOf(model, active, variance);
@@ -215,17 +250,25 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         summary.onlyNoise = last.onlyNoise;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.sum.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
-    const auto covariance = covarianceOf(last.sum.N, scatter);
-    const auto errors = standardErrorsOf(covariance, scatter, last.ofData,
-                                         overdispersionOf(last.sum.N, last.ofData, last.pulls));
-    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
-                                             static_cast<Eigen::Index>(all.size()));
-    for (auto* p : all)  // what is held is as well known as before
+    const double dispersion = overdispersionOf(last.sum.N, last.ofData, last.pulls);
+    // What is not searched is known no better than its prior tells.
+    const bool held = asked.N.size() > 0;
+    if (held) {
+        asked.N(asked.places, asked.places) = last.ofData;
+        if (last.shared.size() > 0)
+            asked.shared(asked.places, asked.places) = last.shared;
+    }
+    const auto size = static_cast<Eigen::Index>(all.size());
+    model.inverseCurvature = model.covariance = Eigen::MatrixXd::Zero(size, size);
+    model.inverseCurvature(active, active) = covarianceOf(last.sum.N, scatter);
+    model.covariance(asked.every, asked.every) = sandwich(held ? asked.N : last.ofData,
+                                                          priorCurvature(model, asked.every, variance),
+                                                          held ? asked.shared : last.shared, scatter, dispersion);
+    for (auto* p : all)
         if (p->free)
             p->standardError = std::numeric_limits<double>::quiet_NaN();
-    model.covariance(active, active) = covariance;
-    for (Eigen::Index r = 0; r < P; ++r)
-        all[static_cast<std::size_t>(active[static_cast<std::size_t>(r)])]->standardError = errors[r];
+    for (const auto k : active)
+        all[static_cast<std::size_t>(k)]->standardError = std::sqrt(model.covariance(k, k));
     return summary;
 }
 
@@ -308,6 +351,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         holdUntold(model, record);
     OutputErrorOptions run;
     run.threads = options.threads;
+    run.shared = !options.fed;
     if (options.fed && hasPeriods(record)) {
         FitSummary summary;
         auto motions = settledMotions(model, record, sections, options.threads);

@@ -117,6 +117,7 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     const auto covariance = covarianceOf(sum.N, variance);
     model.covariance = Eigen::MatrixXd::Zero(count, count);
     model.covariance(active, active) = covariance;
+    model.inverseCurvature = model.covariance;
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         auto& p = *all[static_cast<std::size_t>(row)];

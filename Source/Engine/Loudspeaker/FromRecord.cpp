@@ -100,6 +100,7 @@ void adapt(Record& record, const Model& model)
                 frequency.push_back(record.frequency(section, k));
             }
         const auto responses = respond(model, record.channels, frequency);
+        section.inputNoise.assign(record.channels.size(), std::vector<std::complex<double>>(U.size()));
         for (std::size_t n = 0; n < played.size(); ++n) {
             const double input = std::sqrt(section.inputVariance[played[n]]);
             for (auto* deviation : {&section.deviation, &section.silentDeviation})
@@ -107,6 +108,8 @@ void adapt(Record& record, const Model& model)
                     auto& own = (*deviation)[c][played[n]];
                     own = std::hypot(own, std::abs(responses[c].value[n]) * input);
                 }
+            for (std::size_t c = 0; c < record.channels.size(); ++c)
+                section.inputNoise[c][played[n]] = responses[c].value[n] * input;
         }
         section.inputVariance.clear();
     }

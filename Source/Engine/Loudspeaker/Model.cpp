@@ -225,6 +225,11 @@ Eigen::Index firstParameterOf(const Model& model, std::size_t k)
     return first;
 }
 
+const Eigen::MatrixXd& inverseCurvature(const Model& model)
+{
+    return model.inverseCurvature.rows() == model.covariance.rows() ? model.inverseCurvature : model.covariance;
+}
+
 Eigen::MatrixXd widenedCovariance(const Model& model)
 {
     const auto all = parametersOf(model);

@@ -51,9 +51,12 @@ struct Model {
     std::vector<Component> components;  ///< components.front() is the base
     Component path;                     ///< radiation(): Sd in m^2 and tau in s
     double microphoneDistance = 1.0;    ///< d, m
-    /// of parameterVector() by the noise; empty when unknown. Standard errors are larger than its diagonal says where
-    /// the model leaves more than noise (widenedCovariance())
+    /// of parameterVector(); empty when unknown. Of a model from a file standard errors may be larger than its diagonal
+    /// says (widenedCovariance())
     Eigen::MatrixXd covariance;
+    /// chi^2 N^-1 of the fit's normal equations, which is the covariance only where every residual scatters by itself;
+    /// it tells how its cost bends. Not in files
+    Eigen::MatrixXd inverseCurvature;
 
     const Component& base() const { return components.front(); }
     bool electrical() const { return base().effect->electrical(); }
@@ -102,6 +105,9 @@ std::vector<Parameter*> parametersOf(Model&);
 std::vector<const Parameter*> parametersOf(const Model&);
 /// The place of component k's first parameter among them; that of the path's for k = number of components.
 Eigen::Index firstParameterOf(const Model&, std::size_t k);
+/// Model::inverseCurvature; the covariance where that is not known.
+const Eigen::MatrixXd& inverseCurvature(const Model&);
+
 /// The covariance with the standard errors of the parameters on its diagonal, and the same correlations.
 Eigen::MatrixXd widenedCovariance(const Model&);
 Eigen::VectorXd parameterVector(const Model&);

@@ -82,6 +82,8 @@ public:
                 if (options_.slopes)
                     fit.slopes.push_back(J[c].cast<float>());
             }
+            if (options_.shared)
+                fit.shared = residual_.shared(J);
         }
         if (options_.spectra)
             fit.predicted = std::move(predicted);
@@ -212,6 +214,21 @@ void SectionFit::pull(const Eigen::MatrixXd& more)
         pulls += more;
 }
 
+void SectionFit::keepSlopes(const std::vector<Eigen::Index>& places)
+{
+    for (auto& channel : channels)
+        if (channel.N.size() > 0) {
+            channel.N = channel.N(places, places).eval();
+            channel.g = channel.g(places).eval();
+        }
+    for (auto& J : slopes)
+        J = J(Eigen::all, places).eval();
+    if (pulls.size() > 0)
+        pulls = pulls(places, Eigen::all).eval();
+    if (shared.size() > 0)
+        shared = shared(places, places).eval();
+}
+
 Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& record,
                         const std::vector<std::size_t>& sections)
 {
@@ -232,6 +249,19 @@ Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& recor
         column += Residual::bands;
     }
     return all;
+}
+
+Eigen::MatrixXd sharedOf(const std::vector<SectionFit>& fits)
+{
+    Eigen::MatrixXd sum;
+    for (const auto& fit : fits)
+        if (fit.shared.size() > 0) {
+            if (sum.size() == 0)
+                sum = fit.shared;
+            else
+                sum += fit.shared;
+        }
+    return sum;
 }
 
 double worstPower(const std::vector<SectionFit>& fits)
@@ -265,6 +295,15 @@ void addPrior(const Model& model, const std::vector<Eigen::Index>& active, Norma
             sum.g[k] += weight * slope * p.value;
         }
     }
+}
+
+Eigen::VectorXd priorCurvature(const Model& model, const std::vector<Eigen::Index>& active, double variance)
+{
+    NormalEquations prior;
+    prior.N = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(active.size()), static_cast<Eigen::Index>(active.size()));
+    prior.g = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+    addPrior(model, active, prior, variance);
+    return prior.N.diagonal();
 }
 
 std::vector<Eigen::Index> freeParameters(const Model& model)

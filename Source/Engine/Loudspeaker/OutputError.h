@@ -22,14 +22,18 @@ struct SectionFit {
     std::vector<std::vector<std::complex<double>>> predicted;  ///< [channel][line], if asked for
     std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, if asked for
     Eigen::MatrixXd pulls;                                     ///< of all channels (Residual::pulls()), with N and g
+    Eigen::MatrixXd shared;                                    ///< Residual::shared(), if asked for
 
     void pull(const Eigen::MatrixXd& ofChannel);  ///< adds to `pulls`
+    /// Keeps what is known of some of the parameters that it was differentiated by.
+    void keepSlopes(const std::vector<Eigen::Index>& places);
 };
 
 struct OutputErrorOptions {
     bool gradient = true;  ///< fill N and g
     bool spectra = false;  ///< fill predicted
     bool slopes = false;   ///< fill slopes
+    bool shared = false;   ///< fill shared, with N and g
     int substeps = 1;      ///< of the simulation, per sample, at least 1; each in as many parts as its place asks for
     /// of the sensitivities: they may be coarser, as they only steer the search; raised to the smallest stable number
     int gradientSubsteps = 0;
@@ -60,6 +64,9 @@ std::optional<NormalEquations> sumOf(const std::vector<SectionFit>&);
 /// @param sections  of the fits, indices into record.sections
 Eigen::MatrixXd pullsOf(const std::vector<SectionFit>&, const Record&, const std::vector<std::size_t>& sections);
 
+/// The sum of SectionFit::shared; empty where no section tells it.
+Eigen::MatrixXd sharedOf(const std::vector<SectionFit>&);
+
 /// The largest error power of a channel, over all sections, over that of its noise.
 double worstPower(const std::vector<SectionFit>&);
 
@@ -69,6 +76,9 @@ double worstPower(const std::vector<SectionFit>&);
 /// @param slopes  of the active parameters by what the normal equations are by; none where that is the parameters
 void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&, double variance = 1.0,
               const Eigen::VectorXd& slopes = {});
+
+/// What addPrior() adds to the diagonal of N.
+Eigen::VectorXd priorCurvature(const Model&, const std::vector<Eigen::Index>& active, double variance = 1.0);
 
 /// Indices of the free parameters of a model.
 std::vector<Eigen::Index> freeParameters(const Model&);

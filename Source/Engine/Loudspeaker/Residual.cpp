@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Residual.h"
 
+#include "Engine/Numerics/Gram.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,6 +65,31 @@ Eigen::MatrixXd Residual::pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd&
         from = until;
     }
     return result;
+}
+
+Eigen::MatrixXd Residual::shared(const std::vector<Eigen::MatrixXd>& J) const
+{
+    if (section_.inputNoise.size() != J.size())
+        return {};
+    std::vector<Eigen::Index> played;
+    for (Eigen::Index n = 0; n < lines_; ++n)
+        if (section_.inputNoise.front()[first_ + static_cast<std::size_t>(n)] != 0.0)
+            played.push_back(n);
+    const auto count = static_cast<Eigen::Index>(played.size()), columns = J.front().cols();
+    Eigen::MatrixXd own(2 * count, columns), all = Eigen::MatrixXd::Zero(2 * count, columns),
+                                             result = Eigen::MatrixXd::Zero(columns, columns);
+    for (std::size_t c = 0; c < J.size(); ++c) {
+        for (Eigen::Index n = 0; n < count; ++n) {
+            const auto line = played[static_cast<std::size_t>(n)];
+            const auto k = first_ + static_cast<std::size_t>(line);
+            const auto share = section_.inputNoise[c][k] / section_.deviation[c][k];
+            own.row(n) = share.real() * J[c].row(line) + share.imag() * J[c].row(lines_ + line);
+            own.row(count + n) = share.imag() * J[c].row(line) - share.real() * J[c].row(lines_ + line);
+        }
+        result -= gram(own);
+        all += own;
+    }
+    return result + gram(all);
 }
 
 void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,

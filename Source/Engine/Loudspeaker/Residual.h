@@ -45,6 +45,12 @@ public:
     /// J^T r of each band, one column a band. Bands are equally wide in log frequency, as what tells of a parameter
     /// lies around its resonance or at an end of the range.
     Eigen::MatrixXd pulls(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) const;
+    /// By how much the covariance of g = sum_c J_c^T r_c exceeds that of channels whose noise is their own, which is
+    /// sum_c J_c^T J_c: noise of the input comes through all of them,
+    ///     sum_lines sum_{c != d} Re(a_c a_d^H),   a_c = conj(j_c) inputNoise_c/deviation_c,
+    /// with the row j_c = J_c,re + i J_c,im of a line. Empty where that noise is not known.
+    /// @param J  [channel]
+    Eigen::MatrixXd shared(const std::vector<Eigen::MatrixXd>& J) const;
     /// The derivative of the residuals, from that of the predicted spectrum.
     void fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
               Eigen::Ref<Eigen::VectorXd> column) const;
