@@ -20,6 +20,11 @@ constexpr double wishShare = 0.96, planShare = 0.992;
 constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
 // s, in which a signal follows a limit that falls before it is made to
 constexpr double patience = 0.08;
+// Spacings of what is looked at: in samples, and in periods of the resonance, so that no peak falls between
+constexpr int planSamples = 4, wishSamples = 8;
+constexpr double stepPeriods = 0.02, lookPeriods = 0.03;
+// periods of the resonance: within a longer tick the cone does what its last look did not see
+constexpr double shortTick = 0.05;
 constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
 constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
@@ -28,13 +33,22 @@ double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.
 
 Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
 
-/// While inputs are known, once a step, then coasting.
+/// The largest half, quarter, ... of so many samples that is no longer than this many periods; at least one.
+int spacing(int samples, double periods, double f0, double rate)
+{
+    while (samples > 1 && samples * f0 > periods * rate)
+        samples /= 2;
+    return samples;
+}
+
+/// While inputs are known, once a step or more often, then coasting.
 Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
 {
-    const int points = known / planStep;
+    const int often = std::clamp(static_cast<int>(std::ceil(planStep * f0 / (lookPeriods * rate))), 1, 4),
+              points = known / planStep * often;
     Eigen::VectorXd times(points + coastingPoints);
     for (int k = 0; k < points; ++k)
-        times[k] = planStep * (k + 1.0) / rate;
+        times[k] = planStep * (k + 1.0) / (often * rate);
     times.tail(coastingPoints) = coastingTimes(f0).tail(coastingPoints).array() + known / rate;
     return times;
 }
@@ -42,21 +56,38 @@ Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
 /// What a margin leaves of the limit.
 double leftBy(double uncertainty, double margin) { return std::exp(-uncertainty * margin); }
 
+/// Inputs that are held for a step each reach a cone weaker than the curve through them, by (w T)^2/24 at most: this
+/// makes up for it. Before the first one is what is not known, and after the last one silence.
+Eigen::MatrixXd sharpened(Eigen::Index steps)
+{
+    constexpr double share = 1.0 / 24.0;
+    Eigen::MatrixXd filter = Eigen::MatrixXd::Identity(steps, steps) * (1.0 + 2.0 * share);
+    for (Eigen::Index k = 0; k + 1 < steps; ++k)
+        filter(k, k + 1) = filter(k + 1, k) = -share;
+    if (steps > 0)
+        filter(0, 0) -= share;
+    return filter;
+}
+
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
 }  // namespace
 
 Protection::Protection(const LinearMotion& motion, const RealTimeOptions& options, double delay)
     : rate_(options.sampleRate),
-      committed_(roundedUp(delay - 0.5, planStep)),
       settled_(ticks::in(settlingTime, rate_)),
+      planStep_(spacing(planSamples, stepPeriods, motion.resonance, rate_)),
+      wishStep_(spacing(wishSamples, stepPeriods, motion.resonance, rate_)),
+      looksEvery_(std::max(1, spacing(tick, lookPeriods, motion.resonance, rate_) / wishStep_)),
+      trusts_(tick * motion.resonance <= shortTick * rate_),
+      committed_(roundedUp(delay - 0.5, planStep_)),
       split_(firstCorner * motion.resonance, secondCorner * motion.resonance, rate_),
-      wish_ {Reference(motion, rate_ / wishStep), Reference(motion, rate_ / wishStep),
-             Reference(motion, rate_ / wishStep)},
+      wish_ {Reference(motion, rate_ / wishStep_), Reference(motion, rate_ / wishStep_),
+             Reference(motion, rate_ / wishStep_)},
       coast_(motion, wish_.front(), coastingTimes(motion.resonance), 0, 1.0, 0.0),
       ahead_(motion, wish_.front(),
-             planTimes(motion.resonance, rate_, roundedUp(committed_ + latency, planStep), planStep),
-             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_,
+             planTimes(motion.resonance, rate_, roundedUp(committed_ + latency, planStep_), planStep_),
+             roundedUp(committed_ + latency, planStep_) / planStep_, planStep_ / rate_,
              (committed_ - delay + 0.5) / rate_),
       uncertainty_(motion.uncertainty),
       sent_(static_cast<std::size_t>(committed_), 0.0),
@@ -72,7 +103,7 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
       cool_(motion, rate_),
       heated_(motion.ohms > 0.0)
 {
-    static_assert(tick % wishStep == 0);
+    ahead_.driven = (ahead_.driven * sharpened(ahead_.driven.cols())).eval();
     std::array<double, window> weight {};
     double sum = 0.0;
     for (int k = 0; k < window; ++k)
@@ -102,8 +133,9 @@ void Protection::reset()
     std::fill(sent_.begin(), sent_.end(), 0.0);
     sum_.fill(0.0);
     oldest_ = sentAt_ = 0;
-    summed_ = place_ = muteFor_ = 0;
-    share_ = reach_ = offset_ = reserve_ = 0.0;
+    summed_ = stepped_ = place_ = muteFor_ = 0;
+    share_ = reach_ = offset_ = reserve_ = coasts_ = 0.0;
+    need_.fill(1.0);
     undiminished_ = untouched_ = settled_;
     for (auto& gain : gain_) {  // as after factors of 1
         gain.fill(0.0);
@@ -145,29 +177,42 @@ void Protection::set(const PredistortionControls& controls, bool on)
 }
 
 /// Of each band, what a cone that moved as the wish asks, and were then left alone, would ask for.
+void Protection::look()
+{
+    stepped_ = 0;
+    const double limit = displacement_.value();
+    if (!(limit > 0.0 || power_.value() > 0.0))
+        return;
+    state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
+    coasted_.noalias() = coast_.coasting * state_;
+    coasted_.array() += offset_;
+    const double farthest = coasted_.cwiseAbs().maxCoeff() + reserve_;
+    coasts_ = std::max(coasts_, farthest);
+    if (farthest * limit > wishShare) {
+        for (std::size_t b = 0; b < bands; ++b)
+            wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
+        coasted_.setConstant(offset_);
+        const auto need = largestWithin(coasted_, wishes_, {1.0, 1.0, 1.0},
+                                        std::max(0.0, wishShare / limit - reserve_));
+        for (std::size_t b = 0; b < bands; ++b)
+            need_[b] = std::min(need_[b], need[b]);
+    }
+}
+
+/// The factors for what was looked at in this tick.
 Protection::Values Protection::forWish()
 {
-    Values need {1.0, 1.0, 1.0};
+    look();
     const double limit = displacement_.value();
-    farthest_ = 0.0;
-    if (limit > 0.0 || power_.value() > 0.0) {
-        state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
-        coasted_.noalias() = coast_.coasting * state_;
-        coasted_.array() += offset_;
-        const double farthest = coasted_.cwiseAbs().maxCoeff() + reserve_;
-        reach_ = reachHold_.step(farthest * limit);
-        farthest_ = limit > 0.0 ? std::min(farthest, wishShare / limit) : farthest;
-        if (farthest * limit > wishShare) {
-            for (std::size_t b = 0; b < bands; ++b)
-                wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
-            coasted_.setConstant(offset_);
-            need = largestWithin(coasted_, wishes_, need, std::max(0.0, wishShare / limit - reserve_));
-        }
-        factors_.displacement = wishShare / std::max(wishShare, farthest * limit);
-    }
+    if (limit > 0.0 || power_.value() > 0.0)
+        reach_ = reachHold_.step(coasts_ * limit);
+    farthest_ = limit > 0.0 ? std::min(coasts_, wishShare / limit) : coasts_;
+    factors_.displacement = wishShare / std::max(wishShare, coasts_ * limit);
     Values factors {};
     for (std::size_t b = 0; b < bands; ++b)
-        factors[b] = held_[b].step(1.0 - wishHold_[b].step(1.0 - need[b]), displacement_.value() != displacementNow_);
+        factors[b] = held_[b].step(1.0 - wishHold_[b].step(1.0 - need_[b]), displacement_.value() != displacementNow_);
+    need_.fill(1.0);
+    coasts_ = 0.0;
     return factors;
 }
 
@@ -181,18 +226,18 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
     undiminished_ = undiminished && !astray ? std::min(undiminished_ + 1, settled_) : 0;
     if (!(limit > 0.0))
         return;
-    if (undiminished_ == settled_) {
+    if (trusts_ && undiminished_ == settled_) {
         share_ = reach_;
         return;
     }
     drive_.setZero();
     partDrives_.setZero();
     for (std::size_t k = 0; k < sent_.size(); ++k)
-        drive_[static_cast<Eigen::Index>(k / planStep)] += sent_[(sentAt_ + k) % sent_.size()] / planStep;
+        drive_[static_cast<Eigen::Index>(k / planStep_)] += sent_[(sentAt_ + k) % sent_.size()] / planStep_;
     for (std::size_t k = 0, from = oldest_; k < latency; ++k, from = from + 1 == latency ? 0 : from + 1) {
-        const auto step = static_cast<Eigen::Index>((sent_.size() + k) / planStep);
+        const auto step = static_cast<Eigen::Index>((sent_.size() + k) / planStep_);
         for (std::size_t b = 0; b < bands; ++b) {
-            const double u = delayed_[b][from] / planStep;
+            const double u = delayed_[b][from] / planStep_;
             drive_[step] += u * gain_[b][k];
             partDrives_(step, static_cast<Eigen::Index>(b)) += u * shape_[k];
         }
@@ -248,6 +293,22 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
             gain_[b][k] += factors[b] * shape_[k];
 }
 
+/// A sample of what is asked for.
+void Protection::wish(const Values& values)
+{
+    for (std::size_t b = 0; b < bands; ++b)
+        sum_[b] += values[b];
+    if (!on_ || ++summed_ < wishStep_)
+        return;
+    for (std::size_t b = 0; b < bands; ++b)
+        wish_[b].step(most_ * sum_[b] / wishStep_);
+    sum_.fill(0.0);
+    summed_ = 0;
+    // At the end of a tick it is looked at in any case.
+    if (++stepped_ >= looksEvery_ && place_ + 1 < tick)
+        look();
+}
+
 double Protection::step(double u, bool sound)
 {
     const auto values = split_.split(sound ? u : 0.0);
@@ -255,7 +316,6 @@ double Protection::step(double u, bool sound)
         muteFor_ = latency / tick + ticks::in(muteTime, rate_);
     double left = 0.0, out = 0.0;
     for (std::size_t b = 0; b < bands; ++b) {
-        sum_[b] += values[b];
         left += held_[b].value() * values[b];
         out += gain_[b][static_cast<std::size_t>(place_)] * std::exchange(delayed_[b][oldest_], values[b]);
     }
@@ -263,12 +323,7 @@ double Protection::step(double u, bool sound)
     left *= most_;
     loud_.add(left);
     cool_.add(loud_.factor() * left);
-    if (on_ && ++summed_ == wishStep) {
-        for (std::size_t b = 0; b < bands; ++b)
-            wish_[b].step(most_ * sum_[b] / wishStep);
-        sum_.fill(0.0);
-        summed_ = 0;
-    }
+    wish(values);
     if (!sent_.empty()) {
         sent_[sentAt_] = out;
         sentAt_ = sentAt_ + 1 == sent_.size() ? 0 : sentAt_ + 1;

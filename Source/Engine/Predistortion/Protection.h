@@ -31,6 +31,8 @@ namespace excursion {
 ///  - the factor that keeps the heat of the coil within a bound that falls to the limit as the running mean approaches
 ///    it;
 ///  - silence around a sample that is not finite.
+/// The wish and the plan are taken at spacings that are small against a period of the resonance, however low the sample
+/// rate is.
 /// A plan makes the final decision. It starts from the state of a cone driven by the actual output, and assumes the
 /// known inputs, these factors now, and silence from the next tick on. If that cone would exceed its limit, the factors
 /// are lowered until it does not. Silence was found to be safe one tick before, so it is always a safe continuation,
@@ -92,16 +94,20 @@ public:
 private:
     static constexpr int window = latency - tick + 1;  ///< samples over which a factor is smoothed
     static constexpr int pulse = window + tick - 1;    ///< samples over which one tick's factor acts
-    static constexpr int planStep = 4, wishStep = 8;   ///< samples: step lengths of plan and wish
     using Values = Bands::Values;
     using Path = std::array<double, pulse>;
 
     void plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray, Values& factors);
+    void wish(const Values&);
+    void look();
     Values forWish();
 
     double rate_;
-    int committed_;  ///< number of samples on their way to the cone
-    int settled_;    ///< ticks after which a cone that gets all of the wish follows it
+    int settled_;              ///< ticks after which a cone that gets all of the wish follows it
+    int planStep_, wishStep_;  ///< samples: step lengths of plan and wish
+    int looksEvery_;           ///< steps of the wish
+    bool trusts_;              ///< a cone that gets all of the wish needs no plan
+    int committed_;            ///< number of samples on their way to the cone
     Bands split_;
     std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
     Foresight coast_, ahead_;
@@ -113,8 +119,8 @@ private:
     std::size_t oldest_ = 0;
     std::vector<double> sent_;  ///< the latest committed_ outputs, a ring
     std::size_t sentAt_ = 0;
-    Values sum_ {};  ///< over the step of the wish
-    int summed_ = 0;
+    Values sum_ {};                 ///< over the step of the wish
+    int summed_ = 0, stepped_ = 0;  ///< samples of that step; steps since the wish was looked at
 
     // Gains: factors through the window.
     Path shape_ {};
@@ -134,6 +140,8 @@ private:
     std::array<PeakHold, bands> wishHold_;  ///< of 1 - factor
     PeakHold reachHold_;                    ///< of how far the wish would coast, relative to the limit
     double reach_ = 0.0, farthest_ = 0.0;   ///< farthest_: m, how far it would coast within the limit
+    double coasts_ = 0.0;                   ///< m, how far it would coast, of this tick
+    Values need_ {1.0, 1.0, 1.0};           ///< of this tick
     double offset_ = 0.0, reserve_ = 0.0;   ///< m, see Outcome
     std::array<Factor, bands> held_;        ///< for the excursion
     VoltageFactor loud_;
