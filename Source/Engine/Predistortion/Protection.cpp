@@ -172,6 +172,10 @@ void Protection::set(const PredistortionControls& controls, bool on)
         std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
         for (auto& wish : wish_)
             wish.reset();
+        sum_.fill(0.0);
+        need_.fill(1.0);
+        summed_ = stepped_ = 0;
+        coasts_ = 0.0;
         undiminished_ = 0;  // the cone may still move, of which the wish knows nothing
     }
 }
@@ -298,7 +302,7 @@ void Protection::wish(const Values& values)
 {
     for (std::size_t b = 0; b < bands; ++b)
         sum_[b] += values[b];
-    if (!on_ || ++summed_ < wishStep_)
+    if (++summed_ < wishStep_)
         return;
     for (std::size_t b = 0; b < bands; ++b)
         wish_[b].step(most_ * sum_[b] / wishStep_);
@@ -323,7 +327,8 @@ double Protection::step(double u, bool sound)
     left *= most_;
     loud_.add(left);
     cool_.add(loud_.factor() * left);
-    wish(values);
+    if (on_)
+        wish(values);
     if (!sent_.empty()) {
         sent_[sentAt_] = out;
         sentAt_ = sentAt_ + 1 == sent_.size() ? 0 : sentAt_ + 1;
