@@ -221,6 +221,37 @@ TEST_CASE("The limits hold for 57 drivers and ten minutes each", "[.nightly][slo
     report(study(57, 600.0, 0.1, 1000), 0.65);
 }
 
+TEST_CASE("The power's limit counts the resistance that the coil has, not the one that it had when cold",
+          "[protection]")
+{
+    auto model = withStrong(midbass(), effectNamed("coil-heating"));
+    auto& heating = model.components.back();
+    const double limit = 30.0, ohms = model.baseParameter("Re").value;
+    heating.parameters[0].value = 0.5 * ohms / limit;
+    heating.parameters[1].value = 0.0;  // 1 s
+    heating.parameters[2].value = 0.0;
+    for (const double frequency : {45.0, 300.0}) {
+        PredistortionControls controls;
+        controls.powerLimit = limit;
+        Predistorter engine(model, {rate, 2}, controls);
+        std::vector<double> u(static_cast<std::size_t>(8.0 * rate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = 60.0 * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate);
+        const auto take = simulate(model, through(engine, u), rate, {});
+        double rise = 0.0, heat = 0.0, most = 0.0;
+        for (const double i : take.find(Quantity::current)->samples) {
+            const double power = (ohms + heating.parameters[0].value * rise) * i * i,
+                         share = 1.0 - std::exp(-1.0 / rate);  // of a second, as the limit's mean and the coil's rise
+            rise += share * (power - rise);
+            heat += share * (power - heat);
+            most = std::max(most, heat);
+        }
+        INFO(frequency << " Hz: " << most << " W");
+        CHECK(most < 1.01 * limit);
+        CHECK(most > 0.8 * limit);
+    }
+}
+
 TEST_CASE("The meters show the motion of the driver that was given what came out", "[protection]")
 {
     const auto model = everything();

@@ -35,10 +35,16 @@ void BlackBoxEngine::resetBending()
     std::fill(waiting_.begin(), waiting_.end(), 0.0);
 }
 
-void BlackBoxEngine::warm(double heat)
+void BlackBoxEngine::warm(const Warmth& warmth)
 {
     if (bend_)
-        bend_->warm(heat);
+        bend_->warm(warmth.heat);
+}
+
+void BlackBoxEngine::pass(const double* volts, std::size_t n)
+{
+    if (bend_)
+        bend_->pass(volts, n);
 }
 
 void BlackBoxEngine::set(const PredistortionControls& controls)

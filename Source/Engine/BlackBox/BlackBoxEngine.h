@@ -28,8 +28,9 @@ public:
     void reset() override;
     void resetBending() override;
     void resetPlaying() override { speaker_.reset(); }
-    double heat() const override { return bend_ ? bend_->heat() : 0.0; }
-    void warm(double heat) override;
+    Warmth warmth() const override { return {.heat = bend_ ? bend_->heat() : 0.0}; }
+    void warm(const Warmth&) override;
+    void pass(const double* volts, std::size_t n) override;
     void set(const PredistortionControls&) override;
     void turn(bool bends) override;
     void setLinearShareRemoved(double share) override { speaker_.setLinearShareRemoved(share); }

@@ -54,6 +54,8 @@ public:
 
     double heat() const { return protection_.heat(); }  ///< W, see BoxProtection
     void warm(double heat) { protection_.warm(heat); }
+    /// While process() is not called: the loudspeaker is given these volts.
+    void pass(const double* volts, std::size_t n) { protection_.pass(volts, n); }
 
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);

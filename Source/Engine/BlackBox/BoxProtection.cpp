@@ -95,7 +95,7 @@ void BoxProtection::decide()
     outcome_.reserve = std::max(apart_.value() - known, 0.0) + (1.0 - amount_) * uncorrected;
     protection_.decide(cone_.state(), outcome_);
     // The offset stands until it is told anew.
-    outcome_ = {0.0, 0.0, 0.0, false, outcome_.offset, 0.0, 1.0};
+    outcome_ = {.offset = outcome_.offset};
     const double share = nearness_.step(protection_.share());
     near_ = smooth(std::clamp((share - nearFrom) / (nearTo - nearFrom), 0.0, 1.0));
 }
@@ -135,6 +135,17 @@ void BoxProtection::note(const std::vector<double>& slow, double apart, double a
     apart_.step(std::abs(apart));
     outcome_.asked = std::max(outcome_.asked, std::abs(asked));
     outcome_.wanted = std::max(outcome_.wanted, std::abs(wanted));
+}
+
+void BoxProtection::pass(const double* volts, std::size_t n)
+{
+    double squares = 0.0;
+    for (std::size_t k = 0; k < n; ++k)
+        if (const double u = bounded(volts[k]); sound(volts[k]))
+            squares += u * u;
+    const auto samples = static_cast<double>(n);
+    if (n > 0)
+        protection_.rest(squares / samples, samples);
 }
 
 void BoxProtection::sent(double out, double amount)

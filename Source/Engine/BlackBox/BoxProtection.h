@@ -55,6 +55,8 @@ public:
     double effort() const { return protection_.effort(); }  ///< factor of the power limit on the correction
     double heat() const { return ohms_ > 0.0 ? protection_.heat() / ohms_ : 0.0; }  ///< W
     void warm(double heat) { protection_.warm(ohms_ * heat); }                      ///< W, that is there from before
+    /// While step() is not called: the loudspeaker is given these volts, n samples.
+    void pass(const double* volts, std::size_t n);
     struct Reductions {  ///< factors, since the latest decision
         double region = 1.0;
         Protection::Factors factors;

@@ -45,6 +45,14 @@ void ExponentialAdams::reset()
         N.setZero();
 }
 
+std::span<double> ExponentialAdams::slow(const Effect& effect)
+{
+    for (const auto& law : motion_.laws_)
+        if (law.component->effect == &effect && law.slow > 0)
+            return {motion_.z_.data() + motion_.A_.rows() + law.memory, static_cast<std::size_t>(law.slow)};
+    return {};
+}
+
 const Eigen::VectorXd& ExponentialAdams::state()
 {
     motion_.state(state_);

@@ -39,6 +39,9 @@ public:
     /// @returns dv/dt at the step's end with the input there, m/s^2
     double step(std::span<const double> u);
 
+    /// The memory of an effect that is slow (Effect::slow), to be set at rest; empty if the model has no such effect.
+    std::span<double> slow(const Effect&);
+
     const Eigen::VectorXd& state();                                 ///< (i, x, v, memories)
     double current() const { return motion_.current(); }            ///< A
     double displacement() const { return motion_.displacement(); }  ///< m

@@ -33,7 +33,6 @@ Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainCont
 
 Chain::Chain(std::unique_ptr<ChainEngine> engine, double sampleRate, const ChainControls& controls)
     : engine_(std::move(engine)),
-      rate_(sampleRate),
       wet_(static_cast<int>(fadeTime * sampleRate), engine_->latency()),
       played_(static_cast<int>(fadeTime * sampleRate), 0),
       fullScale_(levelTime, sampleRate),
@@ -54,10 +53,9 @@ void Chain::set(const ChainControls& controls)
                plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
         if (atRest) {  // what is switched in finds nothing of before but the coil's heat
-            const double left = heat();
+            const auto left = engine_->warmth();
             engine_->resetBending();
             engine_->warm(left);
-            rest_ = 0.0;
             played_.turn(plays);
             played_.jump();
             if (plays)
@@ -96,22 +94,11 @@ void Chain::set(const ChainControls& controls)
     }
 }
 
-/// W, of the coil, which cools while the engine rests.
-double Chain::heat() const
-{
-    return engine_->heat() * std::exp(-rest_ / (rate_ * PredistortionControls::averagingTime));
-}
-
-void Chain::takeOver(const Chain& before)
-{
-    engine_->warm(before.heat());
-    rest_ = 0.0;
-}
+void Chain::takeOver(const Chain& before) { engine_->warm(before.engine_->warmth()); }
 
 void Chain::reset()
 {
     engine_->reset();
-    rest_ = 0.0;
     wet_.jump();
     played_.jump();
     for (auto* level : {&fullScale_, &trim_, &place_})
@@ -126,7 +113,7 @@ void Chain::reset()
 
 void Chain::settle()
 {
-    const double left = heat();
+    const auto left = engine_->warmth();
     reset();
     engine_->warm(left);
 }
@@ -139,6 +126,14 @@ Chain::Passing Chain::delayed(Passing passing)
     std::swap(passing, plain_[plainAt_]);
     plainAt_ = plainAt_ + 1 == plain_.size() ? 0 : plainAt_ + 1;
     return passing;
+}
+
+/// The engine rests, and the loudspeaker is given the samples as they are.
+void Chain::rest(const Passing* passing, std::size_t n)
+{
+    for (std::size_t k = 0; k < n; ++k)
+        block_[k] = passing[k].sample * passing[k].fullScale;
+    engine_->pass(block_.data(), n);
 }
 
 void Chain::process(const double* in, double* out, std::size_t n)
@@ -159,7 +154,7 @@ void Chain::process(const double* in, double* out, std::size_t n)
         if (runs)
             engine_->process(block_.data(), taken, played_);
         else
-            rest_ += static_cast<double>(taken);
+            rest(passing.data(), taken);
         for (std::size_t k = 0; k < taken; ++k) {
             if (!runs && !std::isfinite(in[k]))
                 faults_.fetch_add(1, std::memory_order_relaxed);

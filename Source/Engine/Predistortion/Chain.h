@@ -51,11 +51,9 @@ private:
         double trimAfter = 1.0;  ///< the part of the trim that is still to come
     };
     Passing delayed(Passing);
-    double heat() const;
+    void rest(const Passing*, std::size_t n);
 
     std::unique_ptr<ChainEngine> engine_;
-    double rate_;        ///< Hz
-    double rest_ = 0.0;  ///< samples for which the engine has not run
     Fade wet_, played_;  ///< weight of the processed signal; within it, weight of the loudspeaker
     /// place_: of the trim, 1 before the engine and 0 after it; plainGain_: keeps the unprocessed signal within the
     /// limit while it fades

@@ -4,6 +4,7 @@
 #include "Engine/Predistortion/Fade.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
+#include "Engine/Predistortion/Warmth.h"
 
 #include <cstddef>
 
@@ -23,10 +24,12 @@ public:
 
     virtual void reset() = 0;         ///< as if new
     virtual void resetBending() = 0;  ///< the predistorter is off, and its memory is cleared
-    virtual void resetPlaying() = 0;  ///< the loudspeaker is at rest
+    virtual void resetPlaying() = 0;  ///< the loudspeaker is at rest, as warm as it is
 
-    virtual double heat() const = 0;     ///< W, running mean of the coil's heat; 0 if not known
-    virtual void warm(double heat) = 0;  ///< W, the heat that is there from before
+    virtual Warmth warmth() const = 0;     ///< of the coil, as far as it is known
+    virtual void warm(const Warmth&) = 0;  ///< as it is from before
+    /// While process() is not called: the loudspeaker is given these volts, n samples, at most longestPart.
+    virtual void pass(const double* volts, std::size_t n) = 0;
 
     virtual void set(const PredistortionControls&) = 0;  ///< new targets; a class ignores those that it lacks
     virtual void turn(bool bends) = 0;                   ///< if off, the predistorter passes the signal unchanged

@@ -63,6 +63,14 @@ void Cone::reset()
     share_.jump(asked_);
 }
 
+void Cone::warm(const Warmth& warmth)
+{
+    for (const auto& memory : warmth.slow)
+        if (memory.effect)
+            if (const auto slow = motion_.slow(*memory.effect); slow.size() <= memory.value.size())
+                std::copy_n(memory.value.begin(), slow.size(), slow.begin());
+}
+
 void Cone::setLinearShareRemoved(double share)
 {
     if (share >= 0.0 && share <= 1.0)

@@ -7,6 +7,7 @@
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/RealTime.h"
 #include "Engine/Predistortion/Reference.h"
+#include "Engine/Predistortion/Warmth.h"
 
 #include <array>
 
@@ -27,6 +28,8 @@ public:
     int substeps() const { return substeps_; }  ///< steps per sample
     void rest();                                ///< at rest from now on
     void reset();                               ///< at rest, and the share at its target
+
+    void warm(const Warmth&);  ///< its coil is as warm as that
 
     /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly. The linear driver
     ///               runs only while a share is removed: switched on in the middle of a sound, it first settles, for a

@@ -29,6 +29,18 @@ void DriverEngine::resetBending()
     coneRecovery_.reset();
 }
 
+void DriverEngine::resetPlaying()
+{
+    cone_.reset();
+    cone_.warm(bend_.warmth());
+}
+
+void DriverEngine::warm(const Warmth& warmth)
+{
+    bend_.warm(warmth);
+    cone_.warm(warmth);
+}
+
 /// The cone's part, at the higher rate.
 void DriverEngine::play(std::size_t n, Fade& played)
 {

@@ -20,9 +20,10 @@ public:
     std::size_t room() const override { return bend_.room(); }
     void reset() override;
     void resetBending() override;
-    void resetPlaying() override { cone_.reset(); }
-    double heat() const override { return bend_.heat(); }
-    void warm(double heat) override { bend_.warm(heat); }
+    void resetPlaying() override;
+    Warmth warmth() const override { return bend_.warmth(); }
+    void warm(const Warmth&) override;
+    void pass(const double* volts, std::size_t n) override { bend_.pass(volts, n); }
     void set(const PredistortionControls& controls) override { bend_.set(controls); }
     void turn(bool bends) override { bend_.turn(bends); }
     void setLinearShareRemoved(double share) override { cone_.setLinearShareRemoved(share); }

@@ -10,6 +10,7 @@ namespace excursion {
 namespace {
 
 constexpr double hold = 0.05, release = 0.2, forgetting = 5.0;  // s
+constexpr double underWay = 0.1;                                // s, longer than a signal is on its way
 constexpr double slope = 10.0, target = 0.985;                  // of the limit
 // of a mean that is above the limit: the limit that it is given
 constexpr double descent = 0.96;
@@ -22,9 +23,11 @@ HeatFactor::HeatFactor(const LinearMotion& motion, double sampleRate)
       byInput_(motion.currentByInput),
       share_(ticks::share(PredistortionControls::averagingTime, sampleRate)),
       forgetting_(ticks::share(forgetting, sampleRate)),
+      meanSamples_(PredistortionControls::averagingTime * sampleRate),
       load_(motion, sampleRate),
       grid_(motion.holdingStep),
       holding_(motion.holding),
+      unexpected_(ticks::in(underWay, sampleRate)),
       ahead_(ticks::in(hold, sampleRate)),
       expected_(ticks::in(hold, sampleRate)),
       heats_(ticks::in(hold, sampleRate)),
@@ -41,6 +44,7 @@ void HeatFactor::reset()
     factor_.reset();
     effort_.reset();
     loads_ = leads_ = false;
+    blind_ = 0;
     peak_ = mean_ = 0.0;
     excess_ = 1.0;
 }
@@ -53,11 +57,19 @@ void HeatFactor::add(double u)
     peak_ = std::max(peak_, ohms_ * i * i);
 }
 
-double HeatFactor::decide(double limit, bool moving, double heat, double peak, double reach)
+void HeatFactor::rest(double heat, double samples) { mean_ += -std::expm1(-samples / meanSamples_) * (heat - mean_); }
+
+double HeatFactor::decide(double limit, bool moving, double heat, double hotter, double peak, double reach)
 {
     mean_ += share_ * (heat - mean_);
-    const double expected = expected_.step(ahead_.value() * factor() * factor());
-    heat = heats_.step(heat);
+    const double expected = expected_.step(ahead_.value() * hotter * factor() * factor());
+    // What a signal makes that came in while there was no limit was not expected, and tells nothing of the
+    // linearization.
+    if (!(limit > 0.0))
+        blind_ = unexpected_;
+    else if (blind_ > 0)
+        --blind_;
+    heat = heats_.step(blind_ > 0 ? 0.0 : heat);
     if (heat * limit > near && heat > excess_ * expected)
         excess_ = std::min(heat / expected, largestExcess);
     else
@@ -72,7 +84,7 @@ double HeatFactor::decide(double limit, bool moving, double heat, double peak, d
     const auto place = grid_ > 0.0 ? static_cast<std::size_t>(
                            std::min(std::ceil(reach / grid_), static_cast<double>(holding_.size() - 1)))
                                    : 0;
-    const double come = std::max(ahead_.step(peak_) * excess_, holding_[place]);
+    const double come = hotter * std::max(ahead_.step(peak_) * excess_, holding_[place]);
     peak_ = 0.0;
     leads_ = moving || (leads_ && mean_ * limit > target);
     const double aim = leads_ && mean_ > 0.0 ? std::min(limit / target, 1.0 / (descent * mean_)) : limit / target;

@@ -109,11 +109,60 @@ void Inverse::forEachMemory(const Act& act)
             act(*part.memory);
 }
 
+/// What is slow is never linear: its rate is a power.
+template <class Self, class Act>
+void Inverse::forEachSlow(Self& self, const Act& act)
+{
+    for (auto& part : self.curved_)
+        if (part.memory && part.effect->slow())
+            act(*part.effect, *part.memory);
+}
+
 void Inverse::reset()
 {
     forEachMemory([](auto& memory) { memory.reset(); });
     now_ = past_ = {};
     ease_ = 1.0;
+}
+
+void Inverse::rest()
+{
+    Warmth kept;
+    keep(kept);
+    reset();
+    warm(kept);
+}
+
+void Inverse::keep(Warmth& warmth) const
+{
+    std::size_t place = 0;
+    warmth.slow = {};
+    forEachSlow(*this, [&](const Effect& effect, const Memory& memory) {
+        if (place == warmth.slow.size() || memory.size() > warmth.slow[place].value.size())
+            return;
+        warmth.slow[place].effect = &effect;
+        std::copy_n(memory.value(), memory.size(), warmth.slow[place++].value.begin());
+    });
+}
+
+void Inverse::warm(const Warmth& warmth)
+{
+    forEachSlow(*this, [&](const Effect& effect, Memory& memory) {
+        if (const auto* known = warmth.of(effect); known && memory.size() <= known->value.size())
+            memory.set(known->value.data());
+    });
+}
+
+void Inverse::drift(const MotionPoint& at, double seconds)
+{
+    forEachSlow(*this, [&](const Effect&, Memory& memory) { memory.drift(at.i, at.x, at.v, seconds); });
+}
+
+double Inverse::rise()
+{
+    double ohms = 0.0;
+    forEachSlow(*this, [&](const Effect&, Memory& memory) { ohms += memory.dropPerCurrent(); });
+    return ohms;
 }
 
 double Inverse::step(const MotionPoint& to)

@@ -6,6 +6,7 @@
 #include "Engine/Predistortion/LinearMemory.h"
 #include "Engine/Predistortion/Memory.h"
 #include "Engine/Predistortion/Reference.h"
+#include "Engine/Predistortion/Warmth.h"
 
 #include <array>
 #include <limits>
@@ -36,6 +37,14 @@ public:
     Inverse(const Model&, double sampleRate);
 
     void reset();
+    void rest();  ///< as reset(), but what is slow stays (Effect::slow)
+
+    void keep(Warmth&) const;  ///< writes what is slow
+    void warm(const Warmth&);  ///< takes what is slow from there
+    /// What is slow goes on for a time by the rate that this motion gives it; nothing else does.
+    void drift(const MotionPoint&, double seconds);
+    /// By what the resistance of the coil has risen, ohm: the voltage that slow effects take per ampere.
+    double rise();
 
     /// The input (V, or N for a driver without a coil) at this point of the motion. Call it for every sample of the
     /// motion.
@@ -55,6 +64,9 @@ private:
     /// Every memory, of whichever kind.
     template <class Act>
     void forEachMemory(const Act& act);
+    /// Every memory of an effect that is slow.
+    template <class Self, class Act>
+    static void forEachSlow(Self&, const Act& act);
 
     /// An effect that is evaluated at every sample.
     struct Curved {

@@ -31,6 +31,22 @@ void Linearizer::reset()
     wanted_ = 0.0;
 }
 
+void Linearizer::rest()
+{
+    Warmth kept;
+    keep(kept);
+    reset();
+    warm(kept);
+}
+
+void Linearizer::warm(const Warmth& warmth)
+{
+    for (auto* pair : {&wish_, &cone_})
+        pair->inverse.warm(warmth);
+}
+
+void Linearizer::drift(const MotionPoint& motion, double seconds) { followed().inverse.drift(motion, seconds); }
+
 void Linearizer::Pair::step(double u) { made = inverse.step(reference.step(u)); }
 
 /// Secant steps; the first one takes the inverse for linear in the voltage, with the force factor as it is at this

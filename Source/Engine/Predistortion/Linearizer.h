@@ -23,6 +23,13 @@ public:
     Linearizer(const Model&, double sampleRate);
 
     void reset();
+    void rest();  ///< as reset(), but a coil stays as warm as it is
+
+    void keep(Warmth& warmth) const { (follows_ ? cone_ : wish_).inverse.keep(warmth); }  ///< of the cone: what is slow
+    void warm(const Warmth&);
+    /// While nothing is linearized: the coil goes on, for a time, by the motion that the driver has instead.
+    void drift(const MotionPoint&, double seconds);
+    double rise() { return followed().inverse.rise(); }  ///< ohm, of the coil's resistance
 
     /// @param u       V (or N for a driver without a coil)
     /// @param amount  0 to 1
@@ -45,6 +52,8 @@ private:
         void step(double u);
         void moveTo(double voltage);  ///< corrects the latest input until the inverse gives this voltage
     };
+    Pair& followed() { return follows_ ? cone_ : wish_; }
+
     Pair wish_, cone_;
     bool follows_ = false;  ///< the cone does not follow the wish
     int alike_ = 0,

@@ -91,11 +91,31 @@ bool Memory::findDriven(double sampleRate)
 
 void Memory::reset()
 {
-    std::fill(value_.begin(), value_.end(), 0.0);
+    const std::vector<double>& nothing = stages_[0];
+    std::fill(stages_[0].begin(), stages_[0].end(), 0.0);
+    set(nothing.data());
+}
+
+void Memory::set(const double* value)
+{
+    std::copy_n(value, size_, value_.begin());
+    before_ = value_;
     end_ = {};
-    if (kind_ == Kind::driven)
-        for (auto& N : N_)
-            rates(0.0, 0.0, 0.0, value_.data(), N.data());
+    if (kind_ != Kind::driven)
+        return;
+    auto& first = N_.front();
+    rates(0.0, 0.0, 0.0, value_.data(), first.data());
+    for (std::size_t k = 0; k < size_; ++k)
+        first[k] -= own_[k] * value_[k];
+    for (auto& N : N_)
+        N = first;
+}
+
+void Memory::drift(double i, double x, double v, double seconds)
+{
+    rates(i, x, v, value_.data(), rate_.data());
+    for (std::size_t k = 0; k < size_; ++k)
+        value_[k] += seconds * rate_[k];
 }
 
 void Memory::step(const MotionCubic& motion)
@@ -166,6 +186,13 @@ void Memory::stepAny(const MotionCubic& motion)
     ask(1.0, y.data(), k4);
     for (std::size_t k = 0; k < size_; ++k)
         value_[k] += period_ / 6.0 * (k1[k] + 2.0 * (k2[k] + k3[k]) + k4[k]);
+}
+
+double Memory::dropPerCurrent()
+{
+    Balance<double> sum;
+    effect_->contribute(operatingRange_, coefficients_.data(), {1.0, 0.0, 0.0}, value_.data(), stages_[0].data(), sum);
+    return sum.drop;
 }
 
 const double* Memory::findRate()

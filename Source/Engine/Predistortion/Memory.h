@@ -32,6 +32,11 @@ public:
     void stepBack();
 
     const double* value() const { return value_.data(); }
+    void set(const double* value);  ///< at rest, with this value
+    /// For what changes little within a period: goes on for a time by the rate that a motion gives, and no more than
+    /// that.
+    void drift(double i, double x, double v, double seconds);
+    double dropPerCurrent();   ///< ohm: what the effect adds to the voltage at rest for 1 A more
     const double* findRate();  ///< dm/dt at the end of the latest step, 1/s
     /// d m(1) / d i(1) for a current that is a Cubic::past; 0 if the memory is not linear.
     const double* byCurrent() const { return byCurrent_.data(); }

@@ -30,7 +30,9 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
       linearizer_(undonePart(model), options.sampleRate * options.oversampling),
       plausible_(model),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
+      plain_(undonePart(model), options.sampleRate),
       ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0),
+      period_(1.0 / options.sampleRate),
       amount_(amountTime, options.sampleRate),
       near_(nearTime, options.sampleRate),
       effort_(nearTime, options.sampleRate, 1.0),
@@ -53,12 +55,13 @@ void Predistorter::reset()
     target_.reset();
     protection_.reset();
     linearizer_.reset();
+    plain_.reset();
     recovery_.reset();
     amount_.jump();
     near_.jump(0.0);
     effort_.jump(1.0);
     outcome_ = {};
-    heats_ = last_ = left_ = betweenPeak_ = 0.0;
+    squares_ = last_ = left_ = betweenPeak_ = 0.0;
 }
 
 void Predistorter::set(const PredistortionControls& controls)
@@ -71,11 +74,48 @@ void Predistorter::set(const PredistortionControls& controls)
 void Predistorter::turn(bool on)
 {
     if (on && !bends())
-        linearizer_.reset();
+        linearizer_.rest();
     on_ = on;
     target_.aim(on ? controls_.target : Target {});
     amount_.aim(on ? controls_.amount : 0.0);
     protection_.set(controls_, on);
+}
+
+Warmth Predistorter::warmth() const
+{
+    Warmth warmth;
+    linearizer_.keep(warmth);
+    warmth.heat = protection_.heat();
+    return warmth;
+}
+
+void Predistorter::warm(const Warmth& warmth)
+{
+    linearizer_.warm(warmth);
+    protection_.warm(warmth.heat);
+}
+
+/// The coil's current is taken for that of the linear driver.
+/// @returns sum of the squares of the current, A^2
+double Predistorter::heatBy(const double* volts, std::size_t n)
+{
+    double squares = 0.0;
+    if (!(ohms_ > 0.0))
+        return squares;
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto& motion = plain_.step(std::abs(volts[k]) < plausible_.input() ? volts[k] : 0.0);
+        linearizer_.drift(motion, period_);
+        squares += motion.i * motion.i;
+    }
+    return squares;
+}
+
+void Predistorter::pass(const double* volts, std::size_t n)
+{
+    const FlushSubnormals flush;
+    const auto samples = static_cast<double>(n);
+    if (n > 0)
+        protection_.rest((ohms_ + linearizer_.rise()) * heatBy(volts, n) / samples, samples);
 }
 
 /// One sample of the higher rate.
@@ -96,7 +136,7 @@ void Predistorter::bend(double& sample, double amount)
         outcome_.asked = std::max(outcome_.asked, std::abs(asked));
         outcome_.astray = outcome_.astray || out != linearizer_.wanted();
         outcome_.wanted = std::max(outcome_.wanted, std::abs(linearizer_.wanted()));
-        heats_ += ohms_ * i * i;
+        squares_ += i * i;
     }
     sample = last_ = out + left_;
     left_ *= decay_;
@@ -115,10 +155,11 @@ void Predistorter::begin(const double* in, std::size_t n)
     const FlushSubnormals flush;
     const auto factor = static_cast<std::size_t>(oversampling_.factor());
     if (protection_.due()) {
-        outcome_.heat = heats_ / static_cast<double>(Protection::tick * factor);
+        outcome_.hotter = ohms_ > 0.0 ? 1.0 + linearizer_.rise() / ohms_ : 1.0;
+        outcome_.heat = ohms_ * outcome_.hotter * squares_ / static_cast<double>(Protection::tick * factor);
         protection_.decide(linearizer_.cone().state(), outcome_);
         outcome_ = {};
-        heats_ = 0.0;
+        squares_ = 0.0;
         const auto& factors = protection_.factors();
         least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage),
                   std::min(least_.power, factors.power)};
@@ -132,6 +173,8 @@ void Predistorter::begin(const double* in, std::size_t n)
             faults_.fetch_add(1, std::memory_order_relaxed);
         block_[k] = recovery_.step() * protection_.step(target_.step(sound ? in[k] : 0.0), sound);
     }
+    if (!bends())
+        squares_ += static_cast<double>(factor) * heatBy(block_.data(), n);
     oversampling_.up(block_.data(), n, between_.data());
     for (std::size_t k = 0; k < n; ++k) {
         const double amount = amount_.step(), near = near_.step(), effort = effort_.step();

@@ -64,8 +64,10 @@ public:
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
     void publish();                                          ///< makes the latest output visible to collectMeters()
 
-    double heat() const { return protection_.heat(); }  ///< W, the running mean of the coil's heat
-    void warm(double heat) { protection_.warm(heat); }  ///< so much of it is there from before, W
+    Warmth warmth() const;     ///< of the coil
+    void warm(const Warmth&);  ///< as it is from before
+    /// While process() is not called: the driver is given these volts, n samples, which warm its coil.
+    void pass(const double* volts, std::size_t n);
 
     /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
@@ -81,6 +83,7 @@ public:
 private:
     bool bends() const { return on_ || amount_.value() > 0.0; }
     void bend(double& sample, double amount);
+    double heatBy(const double* volts, std::size_t n);
     void fault();
 
     Oversampling oversampling_;
@@ -89,13 +92,14 @@ private:
     Linearizer linearizer_;
     Plausible plausible_;
     Recovery recovery_;
-    double ohms_;
+    Reference plain_;  ///< the linear driver, by which the coil is warmed while nothing is linearized
+    double ohms_, period_;
     bool on_ = true;
     PredistortionControls controls_;
     /// near_: the excursion is near its limit; effort_: factor of the power limit on the amount
     Glide amount_, near_, effort_;
     Protection::Outcome outcome_;
-    double heats_ = 0.0;  ///< sum over the tick, samples of the higher rate times W
+    double squares_ = 0.0;  ///< of the current, sum over the tick and the samples of the higher rate, A^2
     /// V: last_: the latest sample of the higher rate; left_: the remainder of the step that a fault makes
     double last_ = 0.0, left_ = 0.0, decay_;
     double betweenPeak_ = 0.0;  ///< V, of the last block

@@ -284,7 +284,7 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     most_ = last.most;
     auto factors = forWish();
     factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
-    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak(), farthest_);
+    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, last.hotter, loud_.peak(), farthest_);
     for (auto& factor : factors)
         factor *= factors_.voltage * factors_.power * mute_ * most_;
     plan(cone, last.astray, factors);

@@ -65,7 +65,8 @@ public:
     /// The output of the previous tick.
     struct Outcome {
         double asked = 0.0, wanted = 0.0;  ///< peaks of the linearizer's input and of the voltage that it asked for, V
-        double heat = 0.0;                 ///< mean of Re i^2, W
+        double heat = 0.0;                 ///< mean of R i^2, W
+        double hotter = 1.0;               ///< R, the coil's resistance, over that of the cold one
         bool astray = false;               ///< the cone did not get everything that was asked for
         double offset = 0.0;               ///< m, slow offset of the cone from the linear motion
         double reserve = 0.0;              ///< m, possible further deviation from it
@@ -79,6 +80,8 @@ public:
     double voltageLimit() const { return voltageNow_; }  ///< V, of the output at the moment
     double heat() const { return cool_.mean(); }         ///< W, the running mean
     void warm(double heat) { cool_.warm(heat); }         ///< W, running mean from before
+    /// While nothing is decided: the coil turned so much into heat on average, W.
+    void rest(double heat, double samples) { cool_.rest(heat, samples); }
     /// factor of the power limit on the amount of linearization
     double effort() const { return cool_.effort(); }
     /// How close the cone will come to its limit, by the latest plan; 0: there is no limit.
