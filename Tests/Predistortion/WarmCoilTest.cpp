@@ -199,3 +199,25 @@ TEST_CASE("An engine that linearizes after a minute of another mode begins as on
         CHECK(chain.collectMeters().predistorter.displacementReduction == 0.0);
     }
 }
+
+TEST_CASE("An amount that goes back to all of it makes no step, however warm the coil", "[predistortion]")
+{
+    const auto model = heating(0.8, 10.0, 5.0);
+    PredistortionControls controls;
+    controls.amount = 0.0;
+    Predistorter engine(model, warmOptions, controls);
+    passed(engine, warmTone(20.0, 10.0));
+    controls.amount = 1.0;
+    engine.set(controls);
+    const auto after = passed(engine, warmTone(1.0, 10.0));
+    const auto bend = [&after](double from, double to) {
+        double most = 0.0;
+        for (auto n = static_cast<std::size_t>(from * warmRate); n < static_cast<std::size_t>(to * warmRate); ++n)
+            most = std::max(most, std::abs(after[n + 1] - 2.0 * after[n] + after[n - 1]));
+        return most;
+    };
+    const double usual = bend(0.8, 0.99);
+    INFO(bend(0.1, 0.5) / usual << " times the signal's own");
+    CHECK(bend(0.1, 0.5) < 1.1 * usual);
+    CHECK(rmsOf(after, 0.15, 0.2) == Approx(rmsOf(after, 0.3, 0.35)).epsilon(0.01));
+}

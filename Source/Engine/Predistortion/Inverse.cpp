@@ -158,6 +158,16 @@ void Inverse::drift(const MotionPoint& at, double seconds)
     forEachSlow(*this, [&](const Effect&, Memory& memory) { memory.drift(at.i, at.x, at.v, seconds); });
 }
 
+void Inverse::join(const Inverse& other, double share)
+{
+    together_.approach(other.together_, share);
+    for (std::size_t k = 0; k < lagging_.size(); ++k)
+        lagging_[k].memory.approach(other.lagging_[k].memory, share);
+    for (std::size_t k = 0; k < curved_.size(); ++k)
+        if (auto& part = curved_[k]; part.memory)
+            part.memory->approach(*other.curved_[k].memory, part.effect->slow() ? 1.0 : share);
+}
+
 double Inverse::rise()
 {
     double ohms = 0.0;

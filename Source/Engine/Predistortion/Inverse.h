@@ -43,6 +43,9 @@ public:
     void warm(const Warmth&);  ///< takes what is slow from there
     /// What is slow goes on for a time by the rate that this motion gives it; nothing else does.
     void drift(const MotionPoint&, double seconds);
+    /// What is slow becomes that of another inverse of the same model, all other memories go to it by a share of the
+    /// way.
+    void join(const Inverse& other, double share);
     /// By what the resistance of the coil has risen, ohm: the voltage that slow effects take per ampere.
     double rise();
 

@@ -135,6 +135,12 @@ LinearMemory::Sums LinearMemory::step(const MotionCubic& motion)
             sums[2] + forceByTime_[0] * end_[0] + forceByTime_[1] * end_[1] + forceByTime_[2] * end_[2]};
 }
 
+void LinearMemory::approach(const LinearMemory& other, double share)
+{
+    for (std::size_t k = 0; k < value_.size(); ++k)
+        value_[k] += share * (other.value_[k] - value_[k]);
+}
+
 void LinearMemory::correct(double current)
 {
     for (std::size_t k = 0; k < value_.size(); ++k)

@@ -60,6 +60,8 @@ public:
     Sums step(const MotionCubic&);
     /// Undoes the latest step.
     void stepBack() { value_ = before_; }
+    /// Goes by a share of the way to another memory of the same effects.
+    void approach(const LinearMemory& other, double share);
     /// Corrects the current at the end of the step by this difference (A).
     void correct(double current);
 

@@ -8,6 +8,7 @@ namespace excursion {
 namespace {
 
 constexpr double followTime = 0.2;  // s, until a cone that is told where to go is there
+constexpr double joinTime = 0.025;  // s, time constant; far shorter, so that they are alike by then
 constexpr int mostCorrections = 3;
 
 }  // namespace
@@ -15,6 +16,7 @@ constexpr int mostCorrections = 3;
 Linearizer::Linearizer(const Model& model, double sampleRate)
     : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)},
       cone_(wish_),
+      joining_(1.0 - std::exp(-1.0 / (joinTime * sampleRate))),
       settling_(static_cast<int>(followTime * sampleRate))
 {
 }
@@ -79,6 +81,7 @@ double Linearizer::step(double u, double amount, double limit)
     if (follows_) {
         cone_.step(u);
         cone_.moveTo(out);
+        wish_.inverse.join(cone_.inverse, alike_ > 0 ? joining_ : 0.0);
     } else if (out != wanted_) {
         wish_.moveTo(out);
     }

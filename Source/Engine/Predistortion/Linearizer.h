@@ -14,7 +14,8 @@ namespace excursion {
 /// corrected until the inverse asks for exactly the limit. So the reference falls back with the cone and continues from
 /// there, and asks for nothing to make up for the loss. With an amount below 1 the cone does not follow the reference.
 /// Then a second pair of reference and inverse follows the output in the same way, which makes it a simulation of the
-/// driver.
+/// driver. What is slow (the coil's heat) is that of the driver in both. Once the amount is 1 again, the memories of
+/// the first pair go over to those of the second within a fraction of a second, and then the second one is given up.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Linearizer {
@@ -56,6 +57,7 @@ private:
 
     Pair wish_, cone_;
     bool follows_ = false;  ///< the cone does not follow the wish
+    double joining_;        ///< share of the way on which the two pairs join, per sample
     int alike_ = 0,
         settling_;  ///< alike_: samples with an amount of 1; settling_: after how many of them the two pairs coincide
     double wanted_ = 0.0;

@@ -111,6 +111,12 @@ void Memory::set(const double* value)
         N = first;
 }
 
+void Memory::approach(const Memory& other, double share)
+{
+    for (std::size_t k = 0; k < size_; ++k)
+        value_[k] += share * (other.value_[k] - value_[k]);
+}
+
 void Memory::drift(double i, double x, double v, double seconds)
 {
     rates(i, x, v, value_.data(), rate_.data());

@@ -33,6 +33,8 @@ public:
 
     const double* value() const { return value_.data(); }
     void set(const double* value);  ///< at rest, with this value
+    /// Goes by a share of the way to another memory of the same effect.
+    void approach(const Memory& other, double share);
     /// For what changes little within a period: goes on for a time by the rate that a motion gives, and no more than
     /// that.
     void drift(double i, double x, double v, double seconds);
