@@ -25,6 +25,7 @@ constexpr int planSamples = 4, wishSamples = 8;
 constexpr double stepPeriods = 0.02, lookPeriods = 0.03;
 // periods of the resonance: within a longer tick the cone does what its last look did not see
 constexpr double shortTick = 0.05;
+constexpr double farFromLimit = 0.7;                         // of the limit: more than a look can miss
 constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
 constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
@@ -230,7 +231,7 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
     undiminished_ = undiminished && !astray ? std::min(undiminished_ + 1, settled_) : 0;
     if (!(limit > 0.0))
         return;
-    if (trusts_ && undiminished_ == settled_) {
+    if (undiminished_ == settled_ && (trusts_ || reach_ < farFromLimit)) {
         share_ = reach_;
         return;
     }

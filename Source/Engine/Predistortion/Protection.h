@@ -109,7 +109,7 @@ private:
     int settled_;              ///< ticks after which a cone that gets all of the wish follows it
     int planStep_, wishStep_;  ///< samples: step lengths of plan and wish
     int looksEvery_;           ///< steps of the wish
-    bool trusts_;              ///< a cone that gets all of the wish needs no plan
+    bool trusts_;              ///< near the limit, too, a cone that gets all of the wish needs no plan
     int committed_;            ///< number of samples on their way to the cone
     Bands split_;
     std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
