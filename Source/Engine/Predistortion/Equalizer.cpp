@@ -41,24 +41,46 @@ Equalizer::Equalizer(double sampleRate)
             felt(static_cast<Eigen::Index>(j),
                  static_cast<Eigen::Index>(k)) = decibels(bell(k, prototype, thirdOctave(j))) / prototype;
     inverse_ = felt.inverse();
+    still_ = turning_ = Square::Zero();
+    for (std::size_t k = 0; k < bands_; ++k)
+        for (std::size_t j = 0; j < bands_; ++j) {
+            const auto row = static_cast<Eigen::Index>(j), column = static_cast<Eigen::Index>(k);
+            const double s = slope(k, thirdOctave(j));
+            still_(row, column) = (1.0 - s * s) * (1.0 - s * s);
+            turning_(row, column) = s * s / (quality * quality);
+        }
     reset();
+}
+
+/// s/j of a bell at a frequency, as the trapezoids have it.
+double Equalizer::slope(std::size_t band, double frequency) const
+{
+    return std::tan(std::numbers::pi * std::min(frequency / sampleRate_, 0.4999)) / tangent_[band];
 }
 
 std::complex<double> Equalizer::bell(std::size_t band, double gainDb, double frequency) const
 {
-    // As the trapezoids have it.
-    const double A = std::pow(10.0, gainDb / 40.0),
-                 s = std::tan(std::numbers::pi * std::min(frequency / sampleRate_, 0.4999)) / tangent_[band];
+    const double A = std::pow(10.0, gainDb / 40.0), s = slope(band, frequency);
     return std::complex<double>(1.0 - s * s, s * A / quality) / std::complex<double>(1.0 - s * s, s / (A * quality));
 }
 
+/// A host may automate a gain, so that this is asked for in every block: no more than a logarithm per centre.
 ThirdOctaves Equalizer::together(const ThirdOctaves& bells) const
 {
+    using Column = Eigen::Array<double, count, 1>;
+    Column product = Column::Ones();
+    for (std::size_t k = 0; k < bands_; ++k) {
+        if (bells[k] == 0.0)
+            continue;
+        const double A2 = std::pow(10.0, bells[k] / 20.0);
+        const auto column = static_cast<Eigen::Index>(k);
+        const auto still = still_.col(column).head(static_cast<Eigen::Index>(bands_)).array(),
+                   turning = turning_.col(column).head(static_cast<Eigen::Index>(bands_)).array();
+        product.head(static_cast<Eigen::Index>(bands_)) *= (still + A2 * turning) / (still + turning / A2);
+    }
     ThirdOctaves sum {};
     for (std::size_t j = 0; j < bands_; ++j)
-        for (std::size_t k = 0; k < bands_; ++k)
-            if (bells[k] != 0.0)
-                sum[j] += decibels(bell(k, bells[k], thirdOctave(j)));
+        sum[j] = 10.0 * std::log10(product[static_cast<Eigen::Index>(j)]);
     return sum;
 }
 

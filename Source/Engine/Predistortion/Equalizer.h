@@ -46,12 +46,15 @@ private:
     };
     void set(std::size_t band, double gainDb);
     std::complex<double> bell(std::size_t band, double gainDb, double frequency) const;
+    double slope(std::size_t band, double frequency) const;
     ThirdOctaves together(const ThirdOctaves& bells) const;
 
     double sampleRate_;
     std::size_t bands_;  ///< number of bands that are used
     Square inverse_;     ///< dB of the bells per dB at the centres
     std::array<double, count> tangent_ {};
+    /// of each bell (column) at each centre (row), with s as the trapezoids have it: (1 - s^2)^2 and (s/Q)^2
+    Square still_, turning_;
     ThirdOctaves wanted_ {}, target_ {};  ///< wanted_: gains at the centres; target_: gains of the bells
     std::array<Glide, count> gain_;
     std::array<Bell, count> bells_;
