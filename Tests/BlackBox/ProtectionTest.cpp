@@ -120,6 +120,49 @@ TEST_CASE("The heat of a coil that is counted to take all of a black box's volta
     }
 }
 
+TEST_CASE("What a black box's loudspeaker is given while the engine rests counts as heat", "[protection]")
+{
+    const auto& one = known(21);
+    const double ohms = 4.0, quiet = 0.05 * one.box.box.stimulus.peak;
+    const auto sine = [&](double amplitude, double seconds) {
+        std::vector<double> u(static_cast<std::size_t>(seconds * protectedRate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = amplitude
+                   * std::sin(2.0 * std::numbers::pi * 2.0 * one.resonance * static_cast<double>(n) / protectedRate);
+        return u;
+    };
+    PredistortionControls controls;
+    controls.coilResistance = ohms;
+    controls.powerLimit = 0.5 * quiet * quiet / ohms / 0.9;
+    BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+    auto given = sine(quiet, 5.0);
+    predistorter.pass(given.data(), given.size());
+    auto loud = sine(6.0 * quiet, 3.0);
+    predistorter.process(loud.data(), loud.data(), loud.size());
+    given.insert(given.end(), loud.begin(), loud.end());
+    const double heat = heatOf(given, protectedRate, ohms);
+    INFO(heat << " W of " << controls.powerLimit);
+    CHECK(heat < 1.01 * controls.powerLimit);
+    CHECK(heat > 0.9 * controls.powerLimit);
+}
+
+TEST_CASE("What was played before a black box is switched on is no excursion that is asked for", "[protection]")
+{
+    const auto& one = known(21);
+    PredistortionControls controls;
+    controls.displacementLimit = one.box.region.farthest;
+    BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+    predistorter.turn(false);
+    predistorter.reset();
+    std::vector<double> u(static_cast<std::size_t>(20.0 * protectedRate), 1e-3 * one.box.box.stimulus.peak);
+    predistorter.process(u.data(), u.data(), u.size());
+    predistorter.collectMeters();
+    predistorter.turn(true);
+    std::vector<double> next(static_cast<std::size_t>(0.5 * protectedRate), 1e-3 * one.box.box.stimulus.peak);
+    predistorter.process(next.data(), next.data(), next.size());
+    CHECK(predistorter.collectMeters().displacementReduction == 0.0);
+}
+
 TEST_CASE("A black box that is switched on amid the loudest is kept to its limit from then on", "[protection]")
 {
     for (const std::uint64_t seed : {21U, 23U}) {
