@@ -227,7 +227,7 @@ void addPredistort(CLI::App& app, Terminal& terminal)
     addMotionOptions(*verb, o->known);
     verb->add_option("--limit-u", o->voltageLimit, "limit of the output voltage, V (default: no limit)");
     verb->add_option("--limit-p", o->powerLimit,
-                     "limit of the heat in the voice coil, W: Re i^2 averaged over 1 s (default: no limit)");
+                     "limit of the heat in the voice coil, W: R i^2 averaged over 1 s (default: no limit)");
     verb->add_option("--coil-resistance", o->coilResistance,
                      "resistance of the coil, ohm: --limit-p needs it for a model without physics");
     verb->add_option("--margin", o->margin,

@@ -43,7 +43,8 @@ struct PredistortionControls {
                && margin >= 0.0 && margin <= 0.3 && coilResistance >= 0.0 && coilResistance < 1e6 && target.areSound();
     }
 
-    /// s: the heat is Re i^2, averaged by a low-pass of first order with this time constant
+    /// s: the heat is R i^2, R the resistance of the coil as warm as it is, averaged by a low-pass of first order with
+    /// this time constant
     static constexpr double averagingTime = 1.0;
 };
 
