@@ -172,6 +172,7 @@ ProcedureOptions procedureFor(const Measurement& plan, const std::optional<Sweep
                    begin = std::min(place, volts.size() - period);
         options.loudest.assign(options.sound.begin() + static_cast<std::ptrdiff_t>(begin),
                                options.sound.begin() + static_cast<std::ptrdiff_t>(begin + period));
+        options.repeats = true;
     }
     return options;
 }
@@ -181,14 +182,17 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
     Measured result;
     std::string lost;
     bool risen = false;  // the limits have been met, or not
+    std::vector<double> heard;
     for (int attempt = 1;; ++attempt) {
         if (attempt > options.attempts)
             throw Error(Error::Kind::input,
                         lost + " It was so in " + std::to_string(options.attempts)
                             + " attempts: close other programs, or let the device have more latency.");
         auto procedureOptions = options.procedure;
-        if (risen)
+        if (risen) {
             procedureOptions.rise = 0.0;
+            procedureOptions.heard = heard;
+        }
         auto streamOptions = options.stream;
         streamOptions.sampleRate = procedureOptions.sampleRate;
         streamOptions.inputs = procedureOptions.recorded;
@@ -213,14 +217,17 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
                                                 + " and delivers no sound any more. Nothing was written; connect it "
                                                   "again and repeat the measurement.");
         const auto& ending = procedure.ending();
-        for (std::size_t k = 0; isRecorded(ending.stage) && k < procedure.heard().size(); ++k)
+        for (std::size_t k = 0; !risen && isRecorded(ending.stage) && k < procedure.heard().size(); ++k)
             if (procedure.heard()[k] < 1.1)
                 result.remarks.push_back("The " + inputText(procedureOptions.inputs[k])
                                          + " is no louder at full level than in silence: is it connected?");
         if (ending.kind == Ending::Kind::broken || ending.kind == Ending::Kind::overrun
             || ending.kind == Ending::Kind::noInput) {
             lost = sentenceOf(ending, procedureOptions);
-            risen = risen || isRecorded(ending.stage);
+            if (!risen && isRecorded(ending.stage)) {
+                risen = true;
+                heard = procedure.heard();
+            }
             result.remarks.push_back(lost + " All of it was played again.");
             continue;
         }

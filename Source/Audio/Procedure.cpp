@@ -81,7 +81,7 @@ bool ProcedureOptions::isValid(std::string* reason) const
                                       + figure(*watched.limit, "%.4g") + " " + std::string(siUnit(*watched.quantity))
                                       + ", which its input cannot reach; give one below " + figure(most, "%.4g") + ".");
     }
-    for (const double seconds : {listen, rise, pause, tail, fade, ringSeconds})
+    for (const double seconds : {listen, rise, pause, tail, fade, ringSeconds, latency})
         if (!(seconds >= 0 && seconds <= 3600))
             return refuse(reason, "The stages of a measurement take 0 to 3600 s each.");
     if (!(listen > 0) || !(fade > 0) || !(ringSeconds > 0))
@@ -98,11 +98,15 @@ Procedure::Procedure(ProcedureOptions options)
       frame_(static_cast<std::size_t>(options_.recorded)),
       watches_(options_.inputs.size())
 {
-    if (riseLength_ == 0)
+    heard_ = options_.heard;
+    if (riseLength_ > 0)
+        heard_.assign(watches_.size(), 0.0);
+    if (!options_.repeats || heard_.size() != watches_.size() || options_.loudest.empty())
         return;
-    heard_.assign(watches_.size(), 0.0);
+    const auto period = static_cast<double>(options_.loudest.size());
     for (const double s : options_.loudest)
-        loudestPower_ += s * s / static_cast<double>(options_.loudest.size());
+        loudestPower_ += s * s / period;
+    soundBefore_.resize(1 + static_cast<std::size_t>(std::ceil(options_.latency * options_.sampleRate / period)));
 }
 
 std::size_t Procedure::lengthOf(Stage stage) const
@@ -260,15 +264,18 @@ void Procedure::emptyWindows()
         watch.window = watch.windowSum = 0.0;
         watch.silent = false;
     }
-    soundSquares_ = soundBefore_ = 0.0;
+    soundSquares_ = 0.0;
+    std::fill(soundBefore_.begin(), soundBefore_.end(), 0.0);
 }
 
-/// Judges as many samples of the sound as a period has. What is heard may be of the window before: devices deliver
-/// late.
+/// Judges as many samples of the sound as a period has.
 void Procedure::closePlayed()
 {
-    const double power = std::exchange(soundSquares_, 0.0) / static_cast<double>(options_.loudest.size()),
-                 least = std::sqrt(std::min(power, std::exchange(soundBefore_, power)) / loudestPower_);
+    const double power = std::exchange(soundSquares_, 0.0) / static_cast<double>(options_.loudest.size());
+    const double before = *std::min_element(soundBefore_.begin(), soundBefore_.end());
+    const double least = std::sqrt(std::min(power, before) / loudestPower_);
+    soundBefore_[oldestSound_] = power;
+    oldestSound_ = (oldestSound_ + 1) % soundBefore_.size();
     for (std::size_t k = 0; k < watches_.size(); ++k) {
         const bool silent = closeWindow(k) <= seenRatio && heard_[k] * least > certainRatio;
         if (std::exchange(watches_[k].silent, silent) && silent && options_.inputs[k].limit)

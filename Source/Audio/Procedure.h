@@ -56,6 +56,11 @@ struct ProcedureOptions {
     int recorded = 1;                                                       ///< inputs 0 .. recorded - 1 are recorded
     double listen = 0.5, rise = 4.0, pause = 0.5, tail = 1.0, fade = 0.03;  ///< s; rise 0: none
     double ringSeconds = 4.0;
+    /// `sound` repeats the spectrum of `loudest`, at other levels: what an input answers to it is known from the rise
+    bool repeats = false;
+    double latency = 1.0;  ///< s, at most, until what is played comes back
+    /// Procedure::heard() of a rise before, for a procedure without one; may be empty
+    std::vector<double> heard;
 
     bool isValid(std::string* reason = nullptr) const;
 };
@@ -63,9 +68,8 @@ struct ProcedureOptions {
 /// The sound of a measurement, sample by sample, a state machine that knows no device:
 ///
 ///  - listening: silence; where each input rests and how loud its noise is;
-///  - rising: the loudest period again and again, by 40 dB from quiet to full in `rise` seconds, then one period and
-///  0.2
-///    s in full, and a fade;
+///  - rising: the loudest period again and again, by 40 dB from quiet to full in `rise` seconds, then one period
+///    and 0.2 s in full, and a fade;
 ///  - pausing: silence; from here on the inputs are recorded;
 ///  - playing: the sound, once;
 ///  - trailing: silence, as converters deliver later than they are fed;
@@ -73,13 +77,12 @@ struct ProcedureOptions {
 ///
 /// It ends early, after a fade (a cosine of `fade` seconds) where something is being played:
 ///  - when it is told to stop, an input reaches its limit or clips, or the device gives no inputs;
-///  - in the rise, within 12 dB of its end, when no input is twice as loud (rms over a period) as in silence, or one
-///  with
-///    a limit is not 1.2 times as loud;
+///  - in the rise, within 12 dB of its end, when no input is twice as loud (rms over a period) as in silence, or
+///    one with a limit is not 1.2 times as loud;
 ///  - when samples are lost while the inputs are recorded, or no input moves for half a second of sound;
-///  - while the sound is played, when an input with a limit that was heard in the rise has fallen silent: over two
-///  periods
-///    in a row it is not 1.2 times as loud as in silence, where by the rise it had to be four times as loud.
+///  - while a sound is played that repeats the loudest period, when an input with a limit that was heard in the rise
+///    falls silent: over two periods it is not 1.2 times as loud as in silence, where after the rise it should have
+///    been four times as loud all the time since what is played is late at most.
 ///
 /// process() is for the thread of the device: it neither allocates nor locks nor calls the system.
 class Procedure : public Client {
@@ -107,7 +110,8 @@ public:
 
     // Once it has ended:
     const Ending& ending() const { return ending_; }
-    /// rms of each watched input over a period at full level, over that in silence; empty: there was no rise
+    /// rms of each watched input over a period at full level, over that in silence; ProcedureOptions::heard where
+    /// there was no rise
     const std::vector<double>& heard() const { return heard_; }
 
     const ProcedureOptions& options() const { return options_; }
@@ -144,9 +148,10 @@ private:
     std::vector<float> frame_;
     std::vector<Watch> watches_;
     std::vector<double> heard_;
-    double loudestPower_ = 0.0;  ///< mean square of the loudest period
-    double soundSquares_ = 0.0;  ///< sum over the present window
-    double soundBefore_ = 0.0;   ///< mean square in the window before it
+    double loudestPower_ = 0.0;        // mean square of the loudest period; 0: what is heard tells nothing
+    double soundSquares_ = 0.0;        // sum over the present window
+    std::vector<double> soundBefore_;  // mean squares in as many windows before as may not have come back yet
+    std::size_t oldestSound_ = 0;      // of them
 
     std::atomic<Stage> stage_ {Stage::listening};
     Stage now_ = Stage::listening, under_ = Stage::listening;  ///< under_: what is faded

@@ -351,6 +351,8 @@ TEST_CASE("An input that has a limit must not fall silent while the plan is play
             options.sound.push_back(n / 4 % 2 == 0 ? s : 1e-4f * s);
     options.inputs.push_back({1, Quantity::displacement, 1e-3, 0.9e-3});
     options.recorded = 2;
+    options.repeats = true;
+    options.latency = 0.1;
     const auto play = [&](std::size_t dies) {
         Bench bench(options);
         bench.second = [&bench, dies](float x) {
@@ -371,8 +373,37 @@ TEST_CASE("An input that has a limit must not fall silent while the plan is play
         CHECK(ending.seconds * rate < static_cast<double>(dies - at + 4 * period));
         CHECK_THAT(sentenceOf(ending, options), Catch::Contains("fell silent") && Catch::Contains("displacement"));
     }
+    auto other = options;
+    other.repeats = false;  // a sweep leaves the band that a sensor shows
+    std::swap(options, other);
+    CHECK(play(at + 100).kind == Ending::Kind::complete);
+    std::swap(options, other);
+    options.latency = 1.5;  // what is played may still be on its way
+    CHECK(play(at + 100).kind == Ending::Kind::complete);
+    options.latency = 0.1;
     options.inputs[1].limit.reset();
     CHECK(play(at + 100).kind == Ending::Kind::complete);
+}
+
+TEST_CASE("A procedure without a rise knows from the one before what must be heard", "[audio]")
+{
+    auto options = someOptions();
+    for (int n = 0; n < 20; ++n)
+        options.sound.insert(options.sound.end(), options.loudest.begin(), options.loudest.end());
+    options.inputs[0].limit = 15.0;
+    options.repeats = true;
+    options.latency = 0.1;
+    options.rise = 0.0;
+    for (const bool known : {true, false}) {
+        if (known)
+            options.heard = {500.0};
+        else
+            options.heard.clear();
+        Bench bench(options);
+        bench.shape = [&bench](float, std::size_t) { return 1e-4f * static_cast<float>(bench.normal(bench.random)); };
+        bench.run();
+        CHECK(bench.procedure.ending().kind == (known ? Ending::Kind::unseen : Ending::Kind::complete));
+    }
 }
 
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")
