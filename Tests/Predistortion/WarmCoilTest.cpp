@@ -221,3 +221,28 @@ TEST_CASE("An amount that goes back to all of it makes no step, however warm the
     CHECK(bend(0.1, 0.5) < 1.1 * usual);
     CHECK(rmsOf(after, 0.15, 0.2) == Approx(rmsOf(after, 0.3, 0.35)).epsilon(0.01));
 }
+
+TEST_CASE("A coil that another mode has brought above the limit is led down to it, not silenced", "[chain][protection]")
+{
+    const auto model = midbass();
+    const double ohms = model.baseParameter("Re").value;
+    for (const auto mode : {Mode::bypass, Mode::speaker, Mode::distortion}) {
+        INFO(name(mode));
+        auto controls = warmControls(mode);
+        const auto take = simulate(model, warmTone(0.5, 10.0), warmRate, {});
+        const auto& i = take.find(Quantity::current)->samples;
+        const double current = rms({i.begin() + i.size() / 2, i.end()});
+        controls.predistortion.powerLimit = 0.25 * ohms * current * current;
+        Chain chain(model, warmOptions, controls);
+        passed(chain, warmTone(5.0, 1.0));  // four times the limit
+        controls.mode = Mode::linearize;
+        chain.set(controls);
+        const auto after = passed(chain, warmTone(4.0, 1.0));
+        const double end = rmsOf(after, 3.5, 4.0);
+        CHECK(end == Approx(0.5 * rmsOf(warmTone(1.0, 1.0), 0.0, 1.0)).epsilon(0.1));
+        for (double from = 0.1; from < 3.0; from += 0.1) {
+            INFO(from << " s");
+            CHECK(rmsOf(after, from, from + 0.1) > 0.2 * end);
+        }
+    }
+}

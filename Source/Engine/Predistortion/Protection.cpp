@@ -175,7 +175,9 @@ void Protection::set(const PredistortionControls& controls, bool on)
             wish.reset();
         sum_.fill(0.0);
         need_.fill(1.0);
-        summed_ = stepped_ = 0;
+        summed_ = place_ % wishStep_;  // steps end with the tick
+        stepped_ = place_ / wishStep_ % looksEvery_;
+        cool_.warm(cool_.mean());  // down to the limit if it is above it
         coasts_ = 0.0;
         undiminished_ = 0;  // the cone may still move, of which the wish knows nothing
     }
