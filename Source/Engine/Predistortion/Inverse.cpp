@@ -125,14 +125,6 @@ void Inverse::reset()
     ease_ = 1.0;
 }
 
-void Inverse::rest()
-{
-    Warmth kept;
-    keep(kept);
-    reset();
-    warm(kept);
-}
-
 void Inverse::keep(Warmth& warmth) const
 {
     std::size_t place = 0;

@@ -37,9 +37,8 @@ public:
     Inverse(const Model&, double sampleRate);
 
     void reset();
-    void rest();  ///< as reset(), but what is slow stays (Effect::slow)
 
-    void keep(Warmth&) const;  ///< writes what is slow
+    void keep(Warmth&) const;  ///< writes what is slow (Effect::slow)
     void warm(const Warmth&);  ///< takes what is slow from there
     /// What is slow goes on for a time by the rate that this motion gives it; nothing else does.
     void drift(const MotionPoint&, double seconds);
