@@ -92,6 +92,7 @@ ScaledModel withKnown(Model model, const KnownScale& known)
             const auto place = firstParameterOf(model, model.components.size());
             model.covariance.row(place).setZero();
             model.covariance.col(place).setZero();
+            model.inverseCurvature.resize(0, 0);
         }
     }
     const bool noArea = !known.coneArea && !area.free && area.value == defaultArea;

@@ -53,6 +53,7 @@ void takeErrors(Model& part, const std::vector<bool>& held, const Model& whole)
                     part.covariance(row, static_cast<Eigen::Index>(j)) = whole.covariance(places[k], places[j]);
             all[k]->standardError = known[static_cast<std::size_t>(places[k])]->standardError;
         }
+    part.inverseCurvature.resize(0, 0);  // of another fit
 }
 
 /// Fits what is linear of a part, beside effects that stay as the whole has them: free ones would stand for what the

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 namespace excursion {
@@ -27,6 +28,8 @@ double spectralRadius(const Eigen::MatrixXd& J)
 /// to a state weighs as much as what it leads to (Osborne 1960, J. ACM 7).
 double radiusBound(Eigen::MatrixXd J)
 {
+    if (!J.allFinite())
+        return std::numeric_limits<double>::infinity();
     constexpr int sweeps = 3;
     for (int n = 0; n < sweeps; ++n)
         for (Eigen::Index k = 0; k < J.rows(); ++k) {

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -33,26 +32,18 @@ double toldOf(const Parameter& p, double N)
 
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: their wild steps
 /// would hold up the others. Of an effect that is not at work yet nothing can be said: its shapes are kept.
-struct Told {
-    std::vector<Eigen::Index> every;   // free one
-    std::vector<Eigen::Index> places;  // among them, of those that are to be searched
-    Eigen::MatrixXd N, shared;         // of every one, by the data; empty where all are to be searched
-    std::vector<SectionFit> fits;      // of the model and those to be searched, when they had to be known
-
-    std::vector<Eigen::Index> active() const
-    {
-        std::vector<Eigen::Index> result;
-        for (const auto place : places)
-            result.push_back(every[static_cast<std::size_t>(place)]);
-        return result;
-    }
+struct Searched {
+    std::vector<Eigen::Index> active;
+    std::vector<SectionFit> fits;      // of the model by these, when they had to be known
+    std::vector<Eigen::Index> shapes;  // that are left alone
+    Eigen::MatrixXd beside;            // J_active^T J_shapes
 };
 
-Told told(const Model& model, const ErrorOf& errorOf)
+Searched telling(const Model& model, const ErrorOf& errorOf)
 {
-    const auto active = freeParameters(model);
-    Told result {active, std::vector<Eigen::Index>(active.size()), {}, {}, {}};
-    std::iota(result.places.begin(), result.places.end(), Eigen::Index {0});
+    Searched result;
+    auto& active = result.active;
+    active = freeParameters(model);
     const auto all = parametersOf(model);
     std::vector<bool> atWork;
     for (const auto& component : model.components)
@@ -71,20 +62,27 @@ Told told(const Model& model, const ErrorOf& errorOf)
         return result;
     constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
     const double variance = std::max(1.0, sum->cost / std::max(1.0, sum->rows));
-    std::vector<Eigen::Index> kept;  // places
+    std::vector<Eigen::Index> kept, left;  // places
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto k = static_cast<Eigen::Index>(j);
-        if (!isShape(active[j])
-            || toldOf(*all[static_cast<std::size_t>(active[j])], sum->N(k, k)) > fewTimes * variance)
-            kept.push_back(k);
+        const bool tells = !isShape(active[j])
+                           || toldOf(*all[static_cast<std::size_t>(active[j])], sum->N(k, k)) > fewTimes * variance;
+        (tells ? kept : left).push_back(k);
     }
-    if (kept.size() < active.size()) {
-        result.N = sum->N;
-        result.shared = sharedOf(fits);
-        for (auto& fit : fits)
-            fit.keepSlopes(kept);
-        result.places = std::move(kept);
-    }
+    if (left.empty())
+        return result;
+    for (auto& fit : fits)
+        fit.keepSlopes(kept);
+    const auto every = std::move(active);
+    const auto at = [&](const std::vector<Eigen::Index>& places) {
+        std::vector<Eigen::Index> parameters;
+        for (const auto place : places)
+            parameters.push_back(every[static_cast<std::size_t>(place)]);
+        return parameters;
+    };
+    result.beside = sum->N(kept, left);
+    result.shapes = at(left);
+    active = at(kept);
     return result;
 }
 
@@ -143,28 +141,39 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     return coordinates.now();
 }
 
-/// Covariance of an estimate from residuals that do not all scatter by themselves,
-///     N^-1 (max(dispersion, scatter) J^T J + scatter (S + W)) N^-1,   N = J^T J + W,
-/// with what channels share, S, and the curvature of priors, W. NaN where N^-1 has it.
-/// @param S  empty: nothing
-Eigen::MatrixXd sandwich(const Eigen::MatrixXd& JtJ, const Eigen::VectorXd& W, const Eigen::MatrixXd& S, double scatter,
+/// Covariance of an estimate whose normal equations N d = -g, N = J^T J + W, hold more noise than they tell: M is the
+/// covariance of g by the data, in units of the residuals' variance.
+///     N^-1 (dispersion M + scatter W) N^-1
+/// NaN on the diagonal where the data does not tell.
+Eigen::MatrixXd sandwich(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& M, double scatter,
                          double dispersion)
 {
-    constexpr double least = 1e-6;  // of a variance, below which it is of rounding
-    Eigen::MatrixXd N = JtJ;
-    N.diagonal() += W;
     const auto inverse = covarianceOf(N, 1.0);
     const Eigen::MatrixXd known = inverse.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
-    Eigen::MatrixXd more = std::max(0.0, dispersion - scatter) * JtJ;
-    if (S.size() > 0)
-        more += scatter * S;
-    Eigen::MatrixXd result = scatter * inverse + known * more * known;
-    result = (0.5 * (result + result.transpose())).eval();
-    result.diagonal() = result.diagonal().cwiseMax(least * scatter * inverse.diagonal());
+    Eigen::MatrixXd result = known * (dispersion * M + scatter * (N - JtJ)) * known;
     for (Eigen::Index k = 0; k < result.rows(); ++k)
         if (!std::isfinite(inverse(k, k)))
             result(k, k) = std::numeric_limits<double>::quiet_NaN();
-    return result;
+    return 0.5 * (result + result.transpose());
+}
+
+/// Puts shapes that were left alone into a covariance, which knows them by their priors P alone: the others would have
+/// followed them,
+///     C + T P T^T,  -T P  and  P,   T = N^-1 J^T J_shapes.
+void addLeft(Eigen::MatrixXd& covariance, const Model& model, const Searched& searched, const Eigen::MatrixXd& N)
+{
+    if (searched.shapes.empty())
+        return;
+    const auto all = parametersOf(model);
+    Eigen::VectorXd P(static_cast<Eigen::Index>(searched.shapes.size()));
+    for (Eigen::Index k = 0; k < P.size(); ++k)
+        P[k] = std::pow(all[static_cast<std::size_t>(searched.shapes[static_cast<std::size_t>(k)])]->prior, 2);
+    const Eigen::MatrixXd inverse = covarianceOf(N, 1.0).unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; }),
+                          T = inverse * searched.beside, TP = T * P.asDiagonal();
+    covariance(searched.active, searched.active) += TP * T.transpose();
+    covariance(searched.active, searched.shapes) = -TP;
+    covariance(searched.shapes, searched.active) = -TP.transpose();
+    covariance(searched.shapes, searched.shapes) = Eigen::MatrixXd(P.asDiagonal());
 }
 
 /// The search of the model's parameters for the least error.
@@ -178,9 +187,9 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
             parameter->value = std::clamp(parameter->value, parameter->lower, parameter->upper);
             leaveZero(*parameter);
         }
-    auto asked = told(model, errorOf);
-    const auto active = asked.active();
-    auto& atStart = asked.fits;
+    auto searched = telling(model, errorOf);
+    const auto& active = searched.active;
+    auto& atStart = searched.fits;
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
     auto coordinates = coordinatesOf(model, active);
@@ -250,20 +259,13 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         summary.onlyNoise = last.onlyNoise;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.sum.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
-    const double dispersion = overdispersionOf(last.sum.N, last.ofData, last.pulls);
-    // What is not searched is known no better than its prior tells.
-    const bool held = asked.N.size() > 0;
-    if (held) {
-        asked.N(asked.places, asked.places) = last.ofData;
-        if (last.shared.size() > 0)
-            asked.shared(asked.places, asked.places) = last.shared;
-    }
+    const Eigen::MatrixXd scores = last.shared.size() > 0 ? last.ofData + last.shared : last.ofData;
+    const double dispersion = std::max(scatter, overdispersionOf(last.sum.N, scores, last.pulls));
     const auto size = static_cast<Eigen::Index>(all.size());
     model.inverseCurvature = model.covariance = Eigen::MatrixXd::Zero(size, size);
     model.inverseCurvature(active, active) = covarianceOf(last.sum.N, scatter);
-    model.covariance(asked.every, asked.every) = sandwich(held ? asked.N : last.ofData,
-                                                          priorCurvature(model, asked.every, variance),
-                                                          held ? asked.shared : last.shared, scatter, dispersion);
+    model.covariance(active, active) = sandwich(last.sum.N, last.ofData, scores, scatter, dispersion);
+    addLeft(model.covariance, model, searched, last.sum.N);
     for (auto* p : all)
         if (p->free)
             p->standardError = std::numeric_limits<double>::quiet_NaN();

@@ -297,15 +297,6 @@ void addPrior(const Model& model, const std::vector<Eigen::Index>& active, Norma
     }
 }
 
-Eigen::VectorXd priorCurvature(const Model& model, const std::vector<Eigen::Index>& active, double variance)
-{
-    NormalEquations prior;
-    prior.N = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(active.size()), static_cast<Eigen::Index>(active.size()));
-    prior.g = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
-    addPrior(model, active, prior, variance);
-    return prior.N.diagonal();
-}
-
 std::vector<Eigen::Index> freeParameters(const Model& model)
 {
     std::vector<Eigen::Index> result;

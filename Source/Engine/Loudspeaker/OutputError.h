@@ -77,9 +77,6 @@ double worstPower(const std::vector<SectionFit>&);
 void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&, double variance = 1.0,
               const Eigen::VectorXd& slopes = {});
 
-/// What addPrior() adds to the diagonal of N.
-Eigen::VectorXd priorCurvature(const Model&, const std::vector<Eigen::Index>& active, double variance = 1.0);
-
 /// Indices of the free parameters of a model.
 std::vector<Eigen::Index> freeParameters(const Model&);
 

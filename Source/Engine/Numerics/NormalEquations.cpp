@@ -70,7 +70,7 @@ Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance)
     return covariance;
 }
 
-double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& pulls)
+double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& M, const Eigen::MatrixXd& pulls)
 {
     const ScaledSpectrum spectrum(N);
     const double least = unseen * spectrum.largest();
@@ -79,7 +79,7 @@ double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, co
     for (Eigen::Index k = 0; k < N.rows(); ++k)
         if (spectrum.values[k] > least) {
             scatter += along.row(k).squaredNorm() / spectrum.values[k];
-            told += axes.row(k).dot(JtJ * axes.row(k).transpose()) / spectrum.values[k];
+            told += axes.row(k).dot(M * axes.row(k).transpose()) / spectrum.values[k];
         }
     return told > 0.0 ? scatter / told : 0.0;
 }

@@ -42,13 +42,13 @@ Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance);
 
 /// By how much pulls g_k = J_k^T r_k of groups of residuals scatter at a minimum, over what noise of unit variance
 /// makes of them at most on average:
-///     sum_k g_k^T N^-1 g_k / tr(N^-1 J^T J).
+///     sum_k g_k^T N^-1 g_k / tr(N^-1 M).
 /// Residuals that are noise pull at random. Those that a model in a wrong shape leaves pull each group its own way, and
 /// only their sum is zero: parameters scatter by so much more, as variance, than the data says.
 /// @param N      J^T J and the curvature of priors
-/// @param JtJ    of the data alone
+/// @param M      covariance of their sum by noise of unit variance, J^T J where all residuals are independent
 /// @param pulls  one column a group
-double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& pulls);
+double overdispersionOf(const Eigen::MatrixXd& N, const Eigen::MatrixXd& M, const Eigen::MatrixXd& pulls);
 
 /// min |r + J d| over the columns `use` only: the step, with columns scaled and unseen directions left out.
 Eigen::VectorXd gaussNewtonStep(const NormalEquations&, const std::vector<Eigen::Index>& use);
