@@ -193,6 +193,8 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
             procedureOptions.rise = 0.0;
             procedureOptions.heard = heard;
         }
+        constexpr double converters = 0.5;  // s, beside the device's latency, either way
+        procedureOptions.latency = std::max(procedureOptions.latency, 2.0 * options.stream.latency + converters);
         auto streamOptions = options.stream;
         streamOptions.sampleRate = procedureOptions.sampleRate;
         streamOptions.inputs = procedureOptions.recorded;

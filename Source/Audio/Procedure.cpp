@@ -81,6 +81,10 @@ bool ProcedureOptions::isValid(std::string* reason) const
                                       + figure(*watched.limit, "%.4g") + " " + std::string(siUnit(*watched.quantity))
                                       + ", which its input cannot reach; give one below " + figure(most, "%.4g") + ".");
     }
+    if (!heard.empty() && (heard.size() != inputs.size() || !std::all_of(heard.begin(), heard.end(), [](double ratio) {
+                               return std::isfinite(ratio);
+                           })))
+        return refuse(reason, "What was heard in a rise before must be a number for each watched input.");
     for (const double seconds : {listen, rise, pause, tail, fade, ringSeconds, latency})
         if (!(seconds >= 0 && seconds <= 3600))
             return refuse(reason, "The stages of a measurement take 0 to 3600 s each.");
@@ -101,12 +105,13 @@ Procedure::Procedure(ProcedureOptions options)
     heard_ = options_.heard;
     if (riseLength_ > 0)
         heard_.assign(watches_.size(), 0.0);
-    if (!options_.repeats || heard_.size() != watches_.size() || options_.loudest.empty())
+    if (!options_.repeats || heard_.empty() || options_.loudest.empty())
         return;
     const auto period = static_cast<double>(options_.loudest.size());
     for (const double s : options_.loudest)
         loudestPower_ += s * s / period;
-    soundBefore_.resize(1 + static_cast<std::size_t>(std::ceil(options_.latency * options_.sampleRate / period)));
+    soundBefore_.resize(
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(options_.latency * options_.sampleRate / period))));
 }
 
 std::size_t Procedure::lengthOf(Stage stage) const

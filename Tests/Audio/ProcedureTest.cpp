@@ -404,6 +404,10 @@ TEST_CASE("A procedure without a rise knows from the one before what must be hea
         bench.run();
         CHECK(bench.procedure.ending().kind == (known ? Ending::Kind::unseen : Ending::Kind::complete));
     }
+    options.heard = {500.0, 500.0};
+    std::string reason;
+    CHECK_FALSE(options.isValid(&reason));
+    CHECK_THAT(reason, Catch::Contains("rise before"));
 }
 
 TEST_CASE("A recording that nobody takes away ends the measurement", "[audio]")

@@ -34,9 +34,9 @@ double radiusBound(Eigen::MatrixXd J)
     for (int n = 0; n < sweeps; ++n)
         for (Eigen::Index k = 0; k < J.rows(); ++k) {
             const double own = std::abs(J(k, k)), into = J.row(k).lpNorm<1>() - own, from = J.col(k).lpNorm<1>() - own;
-            if (!(into > 0.0 && from > 0.0))
-                continue;
             const double unit = std::sqrt(from / into);
+            if (!(std::isfinite(unit) && unit > 0.0))
+                continue;
             J.row(k) *= unit;
             J.col(k) /= unit;
         }

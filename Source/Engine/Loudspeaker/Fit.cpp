@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/Fit.h"
 
 #include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitCovariance.h"
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/KeptSlopes.h"
 #include "Engine/Loudspeaker/OutputError.h"
@@ -141,41 +142,6 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     return coordinates.now();
 }
 
-/// Covariance of an estimate whose normal equations N d = -g, N = J^T J + W, hold more noise than they tell: M is the
-/// covariance of g by the data, in units of the residuals' variance.
-///     N^-1 (dispersion M + scatter W) N^-1
-/// NaN on the diagonal where the data does not tell.
-Eigen::MatrixXd sandwich(const Eigen::MatrixXd& N, const Eigen::MatrixXd& JtJ, const Eigen::MatrixXd& M, double scatter,
-                         double dispersion)
-{
-    const auto inverse = covarianceOf(N, 1.0);
-    const Eigen::MatrixXd known = inverse.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
-    Eigen::MatrixXd result = known * (dispersion * M + scatter * (N - JtJ)) * known;
-    for (Eigen::Index k = 0; k < result.rows(); ++k)
-        if (!std::isfinite(inverse(k, k)))
-            result(k, k) = std::numeric_limits<double>::quiet_NaN();
-    return 0.5 * (result + result.transpose());
-}
-
-/// Puts shapes that were left alone into a covariance, which knows them by their priors P alone: the others would have
-/// followed them,
-///     C + T P T^T,  -T P  and  P,   T = N^-1 J^T J_shapes.
-void addLeft(Eigen::MatrixXd& covariance, const Model& model, const Searched& searched, const Eigen::MatrixXd& N)
-{
-    if (searched.shapes.empty())
-        return;
-    const auto all = parametersOf(model);
-    Eigen::VectorXd P(static_cast<Eigen::Index>(searched.shapes.size()));
-    for (Eigen::Index k = 0; k < P.size(); ++k)
-        P[k] = std::pow(all[static_cast<std::size_t>(searched.shapes[static_cast<std::size_t>(k)])]->prior, 2);
-    const Eigen::MatrixXd inverse = covarianceOf(N, 1.0).unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; }),
-                          T = inverse * searched.beside, TP = T * P.asDiagonal();
-    covariance(searched.active, searched.active) += TP * T.transpose();
-    covariance(searched.active, searched.shapes) = -TP;
-    covariance(searched.shapes, searched.active) = -TP.transpose();
-    covariance(searched.shapes, searched.shapes) = Eigen::MatrixXd(P.asDiagonal());
-}
-
 /// The search of the model's parameters for the least error.
 /// @param corrected  steps are corrected by the slopes of their begin; errorOf tells slopes and spectra then
 FitSummary search(Model& model, const Record& record, const std::vector<std::size_t>& sections, const ErrorOf& errorOf,
@@ -259,13 +225,8 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
         summary.onlyNoise = last.onlyNoise;
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.sum.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
-    const Eigen::MatrixXd scores = last.shared.size() > 0 ? last.ofData + last.shared : last.ofData;
-    const double dispersion = std::max(scatter, overdispersionOf(last.sum.N, scores, last.pulls));
-    const auto size = static_cast<Eigen::Index>(all.size());
-    model.inverseCurvature = model.covariance = Eigen::MatrixXd::Zero(size, size);
-    model.inverseCurvature(active, active) = covarianceOf(last.sum.N, scatter);
-    model.covariance(active, active) = sandwich(last.sum.N, last.ofData, scores, scatter, dispersion);
-    addLeft(model.covariance, model, searched, last.sum.N);
+    const FitCurvature curvature {active, last.sum.N, last.ofData, last.shared, last.pulls, scatter};
+    keepCovariance(model, curvature, {searched.shapes, searched.beside});
     for (auto* p : all)
         if (p->free)
             p->standardError = std::numeric_limits<double>::quiet_NaN();

@@ -41,15 +41,17 @@ public:
     void warm(double mean)
     {
         mean_ = mean;
-        leads_ = true;
+        lead();
     }
+    /// A limit is new: where y is above it, y is led down to it.
+    void lead() { leads_ = true; }
 
 private:
     double ohms_, byInput_, share_, forgetting_;
     double meanSamples_;  ///< samples of the mean's time constant
     Reference load_;      ///< gives the current of the added samples
     bool loads_ = false;  ///< load_ runs
-    bool leads_ = false;  ///< leads y down to a limit that was lowered
+    bool leads_ = false;  ///< leads y down to a limit that is new or lowered
     double peak_ = 0.0;   ///< W, peak of the tick
     double mean_ = 0.0, excess_ = 1.0;
     double grid_;                  ///< m

@@ -177,7 +177,7 @@ void Protection::set(const PredistortionControls& controls, bool on)
         need_.fill(1.0);
         summed_ = place_ % wishStep_;  // steps end with the tick
         stepped_ = place_ / wishStep_ % looksEvery_;
-        cool_.warm(cool_.mean());  // down to the limit if it is above it
+        cool_.lead();
         coasts_ = 0.0;
         undiminished_ = 0;  // the cone may still move, of which the wish knows nothing
     }
