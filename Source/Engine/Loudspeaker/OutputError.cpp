@@ -27,6 +27,15 @@ bool settles(const Component& component)
                           [](const Parameter& p) { return p.strength && p.value != 0.0; });
 }
 
+/// A sum that is empty at first.
+void addTo(Eigen::MatrixXd& sum, const Eigen::MatrixXd& more)
+{
+    if (sum.size() == 0)
+        sum = more;
+    else
+        sum += more;
+}
+
 class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
@@ -206,13 +215,7 @@ std::optional<NormalEquations> sumOf(const std::vector<SectionFit>& fits)
     return sum;
 }
 
-void SectionFit::pull(const Eigen::MatrixXd& more)
-{
-    if (pulls.size() == 0)
-        pulls = more;
-    else
-        pulls += more;
-}
+void SectionFit::pull(const Eigen::MatrixXd& more) { addTo(pulls, more); }
 
 void SectionFit::keepSlopes(const std::vector<Eigen::Index>& places)
 {
@@ -234,11 +237,8 @@ Eigen::MatrixXd pullsOf(const std::vector<SectionFit>& fits, const Record& recor
 {
     std::map<int, Eigen::MatrixXd> byLevel;
     for (std::size_t s = 0; s < fits.size(); ++s)
-        if (fits[s].pulls.size() > 0) {
-            const auto [own, isFirst] = byLevel.try_emplace(record.sections[sections[s]].level, fits[s].pulls);
-            if (!isFirst)
-                own->second += fits[s].pulls;
-        }
+        if (fits[s].pulls.size() > 0)
+            addTo(byLevel[record.sections[sections[s]].level], fits[s].pulls);
     if (byLevel.empty())
         return {};
     const auto rows = byLevel.begin()->second.rows();
@@ -255,12 +255,8 @@ Eigen::MatrixXd sharedOf(const std::vector<SectionFit>& fits)
 {
     Eigen::MatrixXd sum;
     for (const auto& fit : fits)
-        if (fit.shared.size() > 0) {
-            if (sum.size() == 0)
-                sum = fit.shared;
-            else
-                sum += fit.shared;
-        }
+        if (fit.shared.size() > 0)
+            addTo(sum, fit.shared);
     return sum;
 }
 

@@ -36,19 +36,16 @@ Equalizer::Equalizer(double sampleRate)
     while (bands_ < count && thirdOctave(bands_) <= highest * sampleRate)
         tangent_[bands_] = std::tan(std::numbers::pi * thirdOctave(bands_) / sampleRate), ++bands_;
     Square felt = Square::Identity();
-    for (std::size_t k = 0; k < bands_; ++k)
-        for (std::size_t j = 0; j < bands_; ++j)
-            felt(static_cast<Eigen::Index>(j),
-                 static_cast<Eigen::Index>(k)) = decibels(bell(k, prototype, thirdOctave(j))) / prototype;
-    inverse_ = felt.inverse();
     still_ = turning_ = Square::Zero();
     for (std::size_t k = 0; k < bands_; ++k)
         for (std::size_t j = 0; j < bands_; ++j) {
             const auto row = static_cast<Eigen::Index>(j), column = static_cast<Eigen::Index>(k);
             const double s = slope(k, thirdOctave(j));
+            felt(row, column) = decibels(bell(k, prototype, thirdOctave(j))) / prototype;
             still_(row, column) = (1.0 - s * s) * (1.0 - s * s);
             turning_(row, column) = s * s / (quality * quality);
         }
+    inverse_ = felt.inverse();
     reset();
 }
 
