@@ -11,16 +11,28 @@
 
 namespace excursion {
 
-ShownMotions shownMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                          const ShownMotions& before, unsigned threads)
+namespace {
+
+using PathsByWindow = std::map<std::size_t, Paths>;
+
+/// The responses of current and displacement, in this order, for every window of the sections.
+PathsByWindow pathsToMotion(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                            unsigned threads)
 {
-    const std::vector motion {Quantity::current, Quantity::displacement};
-    const auto histories = before.empty() ? LawHistories {} : lawHistories(model, record, sections, before, false);
-    std::map<std::size_t, Paths> paths;  // by window
+    PathsByWindow paths;
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window))
-            paths[section.window] = pathsOf(model, motion, 0, record.lineRange(section).second,
+            paths[section.window] = pathsOf(model, {Quantity::current, Quantity::displacement}, 0,
+                                            record.lineRange(section).second,
                                             record.sampleRate / static_cast<double>(section.window), false, threads);
+    return paths;
+}
+
+/// shownMotions() by paths that are known.
+ShownMotions shownBy(const PathsByWindow& paths, const Model& model, const Record& record,
+                     const std::vector<std::size_t>& sections, const ShownMotions& before, unsigned threads)
+{
+    const auto histories = before.empty() ? LawHistories {} : lawHistories(model, record, sections, before, false);
     ShownMotions motions(sections.size());
     inParallel(sections.size(), threads, {}, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
@@ -42,10 +54,19 @@ ShownMotions shownMotions(const Model& model, const Record& record, const std::v
     return motions;
 }
 
+}  // namespace
+
+ShownMotions shownMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                          const ShownMotions& before, unsigned threads)
+{
+    return shownBy(pathsToMotion(model, record, sections, threads), model, record, sections, before, threads);
+}
+
 ShownMotions settledMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                             unsigned threads)
 {
-    return shownMotions(model, record, sections, shownMotions(model, record, sections, {}, threads), threads);
+    const auto paths = pathsToMotion(model, record, sections, threads);
+    return shownBy(paths, model, record, sections, shownBy(paths, model, record, sections, {}, threads), threads);
 }
 
 bool isNear(const ShownMotions& one, const ShownMotions& other)
