@@ -14,10 +14,11 @@ namespace excursion {
 /// @param raw  of each line
 std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited);
 
-/// The same with the noise of the silent lines around it on each played one, where there are some, and it is less: a
-/// drift only adds to the scatter.
+/// The same with what drifts left out of the noise of each played line: the noise of the silent lines around it where
+/// there are some, else that beside the drift; each where it is less, as a drift only adds to the scatter.
+/// @param besideDrift  of each line (noiseBesideDrift())
 std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
-                                 const std::vector<int>& excited);
+                                 const std::vector<int>& excited, const std::vector<double>& besideDrift);
 
 /// Of noise that is unknown: a thousandth of the signal on every line. Only its evenness matters.
 /// @param power  sum of |line|^2

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Estimate/Coupling.h"
+#include "Engine/Estimate/DriftNoise.h"
 #include "Engine/Estimate/DrivenBand.h"
 #include "Engine/Estimate/HoldOut.h"
 #include "Engine/Estimate/LineNoise.h"
@@ -111,13 +112,17 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     const int held = options.holdOut && e.realizations > 1 ? leastReaching(averages) : -1;
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
-        const auto& scatter = averages.noise(take.input(), level).variance;
-        const auto inputVariance = withoutDrift(smoothVariance(scatter, e.lines), scatter, e.lines);
+        const auto steadyNoise = [&](const Channel& channel, std::vector<double> smooth) {
+            return withoutDrift(std::move(smooth), averages.noise(channel, level).variance, e.lines,
+                                noiseBesideDrift(averages, channel, level));
+        };
+        const auto inputVariance = steadyNoise(take.input(),
+                                               smoothVariance(averages.noise(take.input(), level).variance, e.lines));
         std::vector<std::vector<double>> variance, steady;
         for (const auto quantity : record.channels) {
-            const auto& noise = averages.noise(*take.find(quantity), level).variance;
-            variance.push_back(smoothVariance(noise, e.lines));
-            steady.push_back(withoutDrift(variance.back(), noise, e.lines));
+            const auto& channel = *take.find(quantity);
+            variance.push_back(smoothVariance(averages.noise(channel, level).variance, e.lines));
+            steady.push_back(steadyNoise(channel, variance.back()));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
             Section section;
