@@ -47,8 +47,9 @@ TEST_CASE("Laws whose shapes hold one another back start again from rest", "[dia
             p.value = p.name == name ? value : p.value;
     };
     place("Fc", 3.0);
-    place("reach", 1.9 * range.displacement);
+    place("reach", 0.004 * range.displacement);
     place("spread", 0.0);
+    place("stick", 1.5);
     search.chooseResiduals(model);
     auto summary = search.fit(model);
     const auto before = search.left(model);

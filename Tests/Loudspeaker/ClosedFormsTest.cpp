@@ -149,6 +149,40 @@ TEST_CASE("A turned element of friction springs back along a line, a knee holds 
     CHECK(slope(0.7, 0.3, 1.0, 1.0) == Approx(0.0).margin(1e-12));  // the limit stays
 }
 
+TEST_CASE("An element of friction holds by Dahl's exponent, and more where the cone creeps", "[effects]")
+{
+    Alone alone(effectNamed("friction"));
+    const double reach = 0.1 * alone.operatingRange.displacement, V = alone.operatingRange.velocity;
+    // The share of its limit that an element carries when the cone has gone `way` reaches at a steady velocity.
+    const auto carried = [&](double bend, double stick, double velocity, double way) {
+        alone.parameters = {0.5, reach, 0.0, 0.0, 0.0, bend, stick, 0.0};
+        alone.prepare();
+        std::vector<double> memory(4, 0.0), rate(4);
+        constexpr int steps = 20000;
+        for (int n = 0; n < steps; ++n) {  // by the midpoint rule
+            const double dt = way * reach / std::abs(velocity) / steps;
+            alone.at(0.0, 0.0, velocity, memory, &rate);
+            auto middle = memory;
+            for (std::size_t k = 0; k < 4; ++k)
+                middle[k] += 0.5 * dt * rate[k];
+            alone.at(0.0, 0.0, velocity, middle, &rate);
+            for (std::size_t k = 0; k < 4; ++k)
+                memory[k] += dt * rate[k];
+        }
+        return memory[0];
+    };
+    for (const double way : {0.3, 1.0, 3.0}) {
+        CHECK(carried(0.0, 0.0, V, way) == Approx(1.0 - std::exp(-way)).epsilon(1e-6));
+        CHECK(carried(1.0, 0.0, V, way) == Approx(way / (1.0 + way)).epsilon(1e-6));  // dg = (1 - g)^2 dx/r
+        CHECK(carried(1.0, 0.0, -V, way) == Approx(-way / (1.0 + way)).epsilon(1e-6));
+    }
+    CHECK(carried(-0.5, 0.0, V, 1.0) == Approx(1.0 - 0.25).epsilon(1e-6));  // (1 - g)^(1/2) = 1 - x/(2 r)
+    constexpr double far = 30.0;
+    for (const double share : {0.05, 0.1, 0.3})  // of V; the limit falls from 1 + b to 1 around V/10
+        CHECK(carried(0.0, 0.4, share * V, far)
+              == Approx(1.0 + 0.4 * std::exp(-100.0 * share * share)).epsilon(1e-6));
+}
+
 TEST_CASE("Friction and heat move the model as they move the virtual bench's loudspeaker", "[effects]")
 {
     constexpr double rate = 48000.0;

@@ -59,7 +59,7 @@ Model bent(Model model, const Record& record, const std::string& only = "")
             if (p.strength)
                 p.value = std::isfinite(p.prior) ? 0.05 * p.prior * (p.lower < 0.0 ? (sign *= -1.0) : 1.0)
                                                  : 1.0 / 343.0;
-            else if (std::isfinite(p.prior) && p.lower == 0.0)
+            else if (std::isfinite(p.prior) && (p.lower == 0.0 || p.name == "bend" || p.name == "stick"))
                 p.value = 0.3;
     }
     return model;

@@ -117,6 +117,32 @@ TEST_CASE("A model file that cannot be is refused in one sentence that names fil
     CHECK_THAT(refusal(nlohmann::json::array()), Contains("the document is []"));
 }
 
+TEST_CASE("A file from before an effect learned a shape keeps what it knew", "[model]")
+{
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("friction"), {});
+    model = withEffect(std::move(model), effectNamed("doppler"), {});
+    const auto count = parameterVector(model).size();
+    model.covariance = Eigen::MatrixXd::Zero(count, count);
+    for (Eigen::Index k = 0; k < count; ++k)
+        model.covariance(k, k) = 1.0 + static_cast<double>(k);
+    auto document = parsed(model);
+    const std::size_t lacking = 3, friction = model.components[1].parameters.size(),
+                      first = static_cast<std::size_t>(firstParameterOf(model, 1)) + friction - lacking;
+    auto& covariance = document["covariance"];
+    for (std::size_t n = 0; n < lacking; ++n) {
+        document["effects"][0]["parameters"].erase(friction - lacking);
+        covariance.erase(first);
+    }
+    for (auto& row : covariance)
+        for (std::size_t n = 0; n < lacking; ++n)
+            row.erase(first);
+    const auto read = modelFromJson(document, "old.json");
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        CHECK(read.covariance(at, at) == (k >= first && k < first + lacking ? 0.0 : 1.0 + static_cast<double>(k)));
+    }
+}
+
 TEST_CASE("A driver without a coil reads and writes, and takes no electrical effect", "[model]")
 {
     auto document = parsed(makeModel("mechanical"));

@@ -150,25 +150,43 @@ const Effect& effectFrom(const JsonField& field, const Model& model)
     return effect;
 }
 
-Eigen::MatrixXd covarianceFrom(const JsonField& field, std::size_t count)
+/// The places of the parameters that a file gives: older ones lack departures at the ends.
+std::vector<Eigen::Index> placesGiven(const JsonField& field, const Model& model)
+{
+    std::vector<Eigen::Index> places;
+    const auto add = [&](const JsonField& component, std::size_t k) {
+        const auto first = firstParameterOf(model, k);
+        for (std::size_t j = 0; j < component.at("parameters").items().size(); ++j)
+            places.push_back(first + static_cast<Eigen::Index>(j));
+    };
+    add(field.at("base"), 0);
+    std::size_t k = 0;
+    for (const auto& item : field.at("effects").items())
+        add(item, ++k);
+    add(field.at("path"), ++k);
+    return places;
+}
+
+/// @param given  places of the parameters that the file gives; zero beside the others
+Eigen::MatrixXd covarianceFrom(const JsonField& field, const std::vector<Eigen::Index>& given, Eigen::Index size)
 {
     if (field.isNull())
         return {};
-    const auto size = static_cast<Eigen::Index>(count);
+    const auto count = given.size();
     const auto expected = "null or " + std::to_string(count) + " rows of " + std::to_string(count)
                           + " numbers, one a parameter of the model";
     const auto rows = field.items();
     if (rows.size() != count)
         field.refuse(expected);
-    Eigen::MatrixXd covariance(size, size);
-    for (Eigen::Index r = 0; r < size; ++r) {
-        const auto& row = rows[static_cast<std::size_t>(r)];
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t r = 0; r < count; ++r) {
+        const auto& row = rows[r];
         const auto values = row.numbers();
         if (values.size() != count)
             row.refuse(expected);
-        for (Eigen::Index c = 0; c < size; ++c)
-            covariance(r, c) = values[static_cast<std::size_t>(c)];
-        if (covariance(r, r) < 0)
+        for (std::size_t c = 0; c < count; ++c)
+            covariance(given[r], given[c]) = values[c];
+        if (covariance(given[r], given[r]) < 0)
             row.refuse("a variance of at least 0 on the diagonal");
     }
     return covariance;
@@ -222,7 +240,7 @@ Model modelFromJson(const JsonField& field)
     const auto path = field.at("path");
     model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);
     model.microphoneDistance = path.at("microphoneDistance").numberWithin(1e-6, 1e6);
-    model.covariance = covarianceFrom(field.at("covariance"), parametersOf(model).size());
+    model.covariance = covarianceFrom(field.at("covariance"), placesGiven(field, model), parameterVector(model).size());
     return model;
 }
 

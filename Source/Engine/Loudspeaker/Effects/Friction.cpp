@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Effects/Effects.h"
 
+#include <ceres/jet.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace excursion {
 namespace {
 
-/// Hysteresis that depends on how far the cone went and not on how fast: Dahl's model (1968), one element per reach
+/// Hysteresis that depends on how far the cone went and hardly on how fast: Dahl's model (1968), one element per reach
 /// r_k,
 ///     F = -(F_c/n) sum_k g_k,   dg_k/dt = (v - |v| g_k) / r_k,   k = 1 .. n,
 /// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
 /// slips when the cone has gone a few r_k. How it begins to slip differs from one weave to the next, so the rate is
-///     dg_k/dt = (v - ((1 - t) |v| g_k + t v |g_k|) (1 - q + q g_k^2)) / r_k,   0 <= q <= 1, 0 <= t <= 1/2,
-/// with a knee q, which holds longer and lets go at once, and a share t that springs back along a line after a turn, as
-/// in Bouc's and Wen's model (1976), of which more than 1/2 would make energy of nothing; both are 0 in Dahl's. The
-/// reaches lie evenly on a logarithmic axis, over `spread` octaves around
+///     dg_k/dt = (v - |v| sign(v) (1 - (1 - h(g_k sign(v)/G))^(1 + e))) / r_k,
+///     h(s) = (s, but (1 - 2 t) s where s < 0) (1 - q + q s^2),   G = 1 + b exp(-(v/v_s)^2),   v_s = V 2^w/10,
+/// with a knee q, 0 <= q <= 1, which holds longer and lets go at once; a share t, 0 <= t <= 1/2, that springs back
+/// along a line after a turn, as in Bouc's and Wen's model (1976), of which more than 1/2 would make energy of nothing;
+/// Dahl's exponent 1 + e, which is above 1 for what yields early and holds on late; and a limit that is higher by b for
+/// a cone that creeps slower than v_s, as in the model of Canudas de Wit et al. (1995, IEEE Trans. Autom. Control 40).
+/// All of these are 0 in Dahl's first model. The reaches lie evenly on a logarithmic axis, over `spread` octaves around
 /// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a thousandth
-/// of the visited velocity (within a hundredth the motion would be wrong by -78 dB, which quiet takes show),
+/// of the visited velocity V (within a hundredth the motion would be wrong by -78 dB, which quiet takes show),
 ///     |v| = V s^2 (3 - 3 s + s^2),  s = |v|/V < 1,
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {
@@ -49,7 +58,10 @@ public:
                 {.name = "reach", .unit = "m", .value = 0.08 * X, .lower = 2e-3 * X, .upper = 2.0 * X},
                 {.name = "spread", .unit = "octaves", .value = 2.0, .even = true, .prior = anySpread},
                 {.name = "knee", .unit = "1", .lower = 0.0, .upper = 1.0, .prior = 0.5},
-                {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25}};
+                {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25},
+                {.name = "bend", .unit = "1", .lower = -0.6, .upper = 2.0, .prior = 0.5},
+                {.name = "stick", .unit = "1", .lower = -0.5, .upper = 2.0, .prior = 0.3},
+                {.name = "pace", .unit = "octaves", .lower = -5.0, .upper = 3.3, .prior = 1.5}};
     }
 
     /// It slips from the first tenth of the way on, at once, or hardly at all: what derivatives show at one start tells
@@ -65,38 +77,47 @@ public:
     }
 
     int memorySize(const OperatingRange&) const override { return elements; }
-    int coefficientCount(const OperatingRange&) const override { return 3 + elements; }
+    int coefficientCount(const OperatingRange&) const override { return reaches + elements; }
 
-    /// Coefficients: the limit of one element, knee, turn, then 1/r_k.
+    /// Coefficients: the limit of one element, knee, turn, exponent, stick, 1/v_s, then 1/r_k.
     template <class T>
-    void prepareFor(const OperatingRange&, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::exp;
         c[0] = p[0] * (1.0 / elements);
         c[1] = p[3];
         c[2] = p[4];
+        c[3] = 1.0 + p[5];
+        c[4] = p[6];
+        c[5] = exp(-std::numbers::ln2 * p[7]) * (10.0 / e.velocity);
         for (int k = 0; k < elements; ++k)
-            c[3 + k] = exp(std::numbers::ln2 * p[2] * (0.5 - k / (elements - 1.0))) / p[1];
+            c[reaches + k] = exp(std::numbers::ln2 * p[2] * (0.5 - k / (elements - 1.0))) / p[1];
     }
 
     template <class T>
     void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
                Balance<T>& sum) const
     {
-        const T speed = (1.0 - c[2]) * size(at.v, rounding * e.velocity), straight = c[2] * at.v;
+        const bool back = at.v < T(0.0);
+        const T rounded = size(at.v, rounding * e.velocity), went = back ? -rounded : rounded;
+        const T held = (back ? -1.0 : 1.0) / limit(c[4], at.v * c[5]);
         T carried = T(0.0);
-        for (int k = 0; k < elements; ++k) {
-            const T& g = memory[k];
-            const T slips = speed * g + (g < T(0.0) ? -straight : straight) * g;
-            rate[k] = (at.v - slips * (1.0 + c[1] * (g * g - 1.0))) * c[3 + k];
-            carried += g;
+        std::array<T, elements> left;
+        for (std::size_t k = 0; k < elements; ++k) {
+            const T s = memory[k] * held;
+            const T share = s < T(0.0) ? (1.0 - 2.0 * c[2]) * s : s;
+            left[k] = 1.0 - share * (1.0 + c[1] * (s * s - 1.0));
+            carried += memory[k];
         }
+        raise(left, c[3]);
+        for (std::size_t k = 0; k < elements; ++k)
+            rate[k] = (at.v - went * (1.0 - left[k])) * c[reaches + k];
         sum.force -= c[0] * carried;
     }
 
 private:
-    static constexpr int elements = 4;
-    static constexpr double rounding = 0.001;  // of the visited velocity
+    static constexpr int elements = 4, reaches = 6;  // coefficients before those of the reaches
+    static constexpr double rounding = 0.001;        // of the visited velocity
 
     template <class T>
     static T size(const T& v, double width)
@@ -106,6 +127,50 @@ private:
             return positive;
         const T s = positive * (1.0 / width);
         return width * s * s * (3.0 - 3.0 * s + s * s);
+    }
+
+    using Powers = Eigen::Array<double, elements, 1>;
+    // What is left of the limit, from which on its powers are on a line: they have no slope there, or no end of it.
+    static constexpr double nearLimit = 0.02;
+
+    /// left^exponent, of all elements at once, as powers are dear.
+    static void raise(std::array<double, elements>& left, double exponent)
+    {
+        if (exponent == 1.0)
+            return;
+        Eigen::Map<Powers> values(left.data());
+        const Powers above = values.max(nearLimit);
+        values = values.min(nearLimit) / nearLimit * (exponent * above.log()).exp();
+    }
+    template <int slopes>
+    static void raise(std::array<ceres::Jet<double, slopes>, elements>& left,
+                      const ceres::Jet<double, slopes>& exponent)
+    {
+        if (exponent.a == 1.0 && exponent.v.isZero(0.0))
+            return;
+        Powers above;
+        for (std::size_t k = 0; k < elements; ++k)
+            above[static_cast<Eigen::Index>(k)] = std::max(left[k].a, nearLimit);
+        const Powers logs = above.log(), powers = (exponent.a * logs).exp();
+        for (std::size_t k = 0; k < elements; ++k) {
+            const auto at = static_cast<Eigen::Index>(k);
+            auto& one = left[k];
+            const bool onLine = one.a < nearLimit;
+            const double below = onLine ? one.a / nearLimit : 1.0,
+                         slope = onLine ? powers[at] / nearLimit : exponent.a * powers[at] / above[at];
+            one.v = slope * one.v + below * powers[at] * logs[at] * exponent.v;
+            one.a = below * powers[at];
+        }
+    }
+
+    /// G, of the speed in units of v_s.
+    template <class T>
+    static T limit(const T& stick, const T& speed)
+    {
+        using std::exp;
+        constexpr double nothing = 20.0;  // exp(-20)
+        const T square = speed * speed;
+        return square < T(nothing) ? 1.0 + stick * exp(-square) : T(1.0);
     }
 };
 
