@@ -248,9 +248,13 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
     result.chiSquaredPerValue = cost / std::max(1.0, rows);
     if (options.spectra) {
         result.residuals = residualCurves(model, record, sections, fits);
-        if (!result.residuals.empty())
-            result.overTime = curvesOverTime(model, record,
-                                             fitsOfAll(model, record, sections, fits, run, progress.part(1.0, 1.0)));
+        const bool isTold = !result.residuals.empty();
+        if (isTold || record.channelIndex(Quantity::displacement)) {
+            const auto all = fitsOfAll(model, record, sections, fits, run, progress.part(1.0, 1.0));
+            if (isTold)
+                result.overTime = curvesOverTime(model, record, all);
+            result.restShift = restShift(record, all);
+        }
     }
     progress.at(1.0, "compared");
     return result;

@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/ErrorLevel.h"
 #include "Engine/Diagnosis/ResidualCurves.h"
+#include "Engine/Diagnosis/RestShift.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Estimate/Record.h"
 #include "Engine/Progress.h"
@@ -51,7 +52,8 @@ struct Comparison {
     std::vector<ChannelComparison> channels;
     std::vector<ResidualCurve> residuals;  ///< against motion and current, at the loudest level
     std::vector<ResidualCurve> overTime;   ///< stiffness and resistance of each section of the take
-    double chiSquaredPerValue = 0.0;       ///< over all channels and levels
+    std::optional<RestShift> restShift;
+    double chiSquaredPerValue = 0.0;  ///< over all channels and levels
     bool noiseKnown = false;
     bool validated = false;  ///< on sections that no fit saw
 };

@@ -190,6 +190,8 @@ Json toJson(const Comparison& comparison)
     document["residualsOverTime"] = Json::array();
     for (const auto& residual : comparison.overTime)
         document["residualsOverTime"].push_back(residualJson(residual));
+    if (const auto& shift = comparison.restShift)
+        document["restShift"] = {{"moved", shift->moved}, {"after", shift->after}, {"before", shift->before}};
     return document;
 }
 
@@ -208,6 +210,10 @@ Comparison comparisonFromJson(const JsonField& field)
     if (field.has("residualsOverTime"))  // older documents have none
         for (const auto& residual : field.at("residualsOverTime").items())
             comparison.overTime.push_back(residualFrom(residual));
+    if (field.has("restShift")) {
+        const auto shift = field.at("restShift");
+        comparison.restShift = {shift.at("moved").number(), shift.at("after").number(), shift.at("before").number()};
+    }
     return comparison;
 }
 

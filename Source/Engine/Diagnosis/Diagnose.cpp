@@ -6,6 +6,7 @@
 #include "Engine/Diagnosis/Reason.h"
 #include "Engine/Diagnosis/Separate.h"
 #include "Engine/Diagnosis/Trial.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -13,6 +14,15 @@
 
 namespace excursion {
 namespace {
+
+const std::string unrepeated = "Something is left that no effect of the catalogue explains and that does not repeat. ";
+
+std::string inWords(const RestShift& shift)
+{
+    return unrepeated + "The rest position of the cone moves by " + nominal(shift.moved, "m") + " between "
+           + plainText(shift.after, 2) + " s and " + plainText(shift.before, 2)
+           + " s: the suspension snaps over, or the sensor was knocked.";
+}
 
 /// Whether an error stands over the noise by what the parameters leave open.
 bool isOpen(const Comparison& comparison)
@@ -134,6 +144,10 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
         diagnosis.measureNext = whatParts(diagnosis.ranking.front().model,
                                           diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
+    if (diagnosis.verdict == Verdict::complete && before.restShift) {
+        diagnosis.verdict = Verdict::unknownEffect;
+        diagnosis.sentence = inWords(*before.restShift);
+    }
     if (diagnosis.verdict == Verdict::complete && isOpen(before))
         diagnosis.sentence +=
             " On what was held out the error is larger, but no larger than the standard errors of the "
@@ -150,8 +164,7 @@ void tell(Diagnosis& diagnosis, const std::vector<Problem>& problems)
     if (jump == problems.end() || diagnosis.verdict != Verdict::complete)
         return;
     diagnosis.verdict = Verdict::unknownEffect;
-    diagnosis.sentence = "Something is left that no effect of the catalogue explains and that does not repeat. "
-                         + jump->sentence;
+    diagnosis.sentence = unrepeated + jump->sentence;
 }
 
 }  // namespace excursion
