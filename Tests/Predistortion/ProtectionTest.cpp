@@ -344,7 +344,7 @@ TEST_CASE("A cone is foreseen as it will move", "[protection]")
         times[k] = 7.0 * static_cast<double>(k + 1) / rate;
     constexpr Eigen::Index steps = 10;
     const double step = 4.0 / rate, since = 1.5 / rate;
-    const Foresight foresight(linearMotion(model, rate), other, times, steps, step, since);
+    const Foresight foresight(linearMotion(model, rate), other.basis(), times, steps, step, since);
     Draw draw(8);
     for (int n = 0; n < 5000; ++n)
         reference.step(draw.within(-1.0, 1.0));
