@@ -53,8 +53,10 @@ void Linearizer::rest()
 {
     Warmth kept;
     keep(kept);
+    const auto charged = withheld_;
     reset();
     warm(kept);
+    withheld_ = charged;
 }
 
 void Linearizer::warm(const Warmth& warmth)

@@ -32,12 +32,13 @@ public:
     Linearizer(const Model&, double sampleRate, const AmplifierCoupling& = {});
 
     void reset();
-    void rest();  ///< as reset(), but a coil stays as warm as it is
+    void rest();  ///< as reset(), but a coil stays as warm as it is, and an amplifier as charged
 
     void keep(Warmth& warmth) const { (follows_ ? cone_ : wish_).inverse.keep(warmth); }  ///< of the cone: what is slow
     void warm(const Warmth&);
     /// While nothing is linearized: the coil goes on, for a time, by the motion that the driver has instead.
     void drift(const MotionPoint&, double seconds);
+    void pass(double out) { withheld_.take(out); }       ///< the same of the amplifier, which is given these volts
     double rise() { return followed().inverse.rise(); }  ///< ohm, of the coil's resistance
 
     /// @param u       V (or N for a driver without a coil)

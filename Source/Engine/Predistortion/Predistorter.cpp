@@ -195,6 +195,9 @@ void Predistorter::begin(const double* in, std::size_t n)
         if (bends())
             for (std::size_t s = 0; s < factor; ++s)
                 bend(between_[k * factor + s], on_ ? effort * (amount + (1.0 - amount) * near) : amount);
+        else
+            for (std::size_t s = 0; s < factor; ++s)
+                linearizer_.pass(between_[k * factor + s]);
     }
     betweenPeak_ = 0.0;
     for (std::size_t k = 0; k < n * factor; ++k)
