@@ -163,27 +163,26 @@ TEST_CASE("The limit holds as soon as the correction is switched on, however the
 {
     const auto model = lopsided(0.2, true);
     const double limit = 0.6 * measuredDisplacement(model), rate = 8000.0;
-    for (const auto& amplifier : {capacitor, filter, AmplifierCoupling {0.5, 1}})
-        for (const double frequency : {0.5, 57.0}) {
-            PredistortionControls controls;
-            controls.displacementLimit = limit;
-            Predistorter engine(model, {rate, 2, amplifier}, controls);
-            engine.turn(false);
-            std::vector<double> u(static_cast<std::size_t>(3.0 * rate));
-            for (std::size_t n = 0; n < u.size(); ++n)
-                u[n] = 2.0 * voltsTo(model, limit, frequency)
-                       * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate);
-            const std::size_t switched = u.size() / 2 + 500;
-            engine.process(u.data(), u.data(), switched);
-            engine.turn(true);
-            engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
-            const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
-            const auto& x = take.find(Quantity::displacement)->samples;
-            // A fifth of a second for a cone that was beyond the limit to come back.
-            const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
-            INFO(frequency << " Hz, order " << amplifier.order << ", corner " << amplifier.corner << " Hz");
-            CHECK(peak({from, x.end()}) < 1.01 * limit);
-        }
+    for (const auto& amplifier : {capacitor, filter, AmplifierCoupling {0.5, 1}}) {
+        PredistortionControls controls;
+        controls.displacementLimit = limit;
+        Predistorter engine(model, {rate, 2, amplifier}, controls);
+        engine.turn(false);
+        // What is played before charges the amplifier one way, what follows comes on top of that.
+        std::vector<double> u(static_cast<std::size_t>(3.0 * rate));
+        const std::size_t switched = u.size() / 2;
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = (n < switched ? -2.0 : 2.0) * voltsTo(model, limit, 1.0);
+        engine.process(u.data(), u.data(), switched);
+        engine.turn(true);
+        engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
+        const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
+        const auto& x = take.find(Quantity::displacement)->samples;
+        // A fifth of a second for a cone that was beyond the limit to come back.
+        const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
+        INFO("order " << amplifier.order << ", corner " << amplifier.corner << " Hz");
+        CHECK(peak({from, x.end()}) < 1.01 * limit);
+    }
 }
 
 TEST_CASE("Behind an amplifier that is stated less distortion is left than behind one that is not", "[protection]")
