@@ -37,7 +37,9 @@ nlohmann::ordered_json documentOf(const PredistortArguments& options, const Wav&
                                                          {"sampleRate", wav.sampleRate},
                                                          {"samples", wav.channels.front().size()},
                                                          {"fullScale", options.fullScale},
-                                                         {"amount", options.amount}});
+                                                         {"amount", options.amount},
+                                                         {"coupling", options.coupling.corner},
+                                                         {"couplingOrder", options.coupling.order}});
 }
 
 void sayLoudest(const PredistortArguments& options, double loudest, Terminal& terminal)
@@ -68,6 +70,12 @@ void requireValid(const PredistortionControls& controls)
         throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
 }
 
+void requireValid(const AmplifierCoupling& coupling)
+{
+    if (std::string reason; !coupling.isValid(&reason))
+        throw Error(Error::Kind::usage, "--coupling: " + reason + ".");
+}
+
 std::string turnedDown(double decibels, bool limited)
 {
     return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
@@ -96,6 +104,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
                                       {"--coil-resistance", options.coilResistance.value_or(1.0)}})
         if (!(value > 0.0 && std::isfinite(value)))
             throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
+    requireValid(options.coupling);
     requireFilePlace(options.out);
     const auto document = readJson(options.model);
     const JsonField field(document, "", options.model);
@@ -113,7 +122,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, "--coil-resistance is of models without physics; a driver knows its own.");
     if (options.powerLimit && !model.electrical())
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
-    const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
+    const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling, options.coupling};
     const auto controls = controlsFrom(options, model);
     requireValid(controls);
     nlohmann::ordered_json target;
@@ -234,6 +243,14 @@ void addPredistort(CLI::App& app, Terminal& terminal)
                      "keep the limits for every loudspeaker whose parameters differ from the model's by at most this "
                      "share, 0 to 0.3")
         ->check(CLI::Range(0.0, 0.3))
+        ->capture_default_str();
+    verb->add_option(
+            "--coupling", o->coupling.corner,
+            "Hz, the corner of the high-pass between the output and the loudspeaker: the coupling capacitors of "
+            "sound card and amplifier. The limit of the motion holds behind it. 0: a constant voltage passes")
+        ->capture_default_str();
+    verb->add_option("--coupling-order", o->coupling.order, "1 or 2, the order of that high-pass")
+        ->check(CLI::IsMember({1, 2}))
         ->capture_default_str();
     addTargetOptions(*verb, o->target);
     verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")

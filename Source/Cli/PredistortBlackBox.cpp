@@ -84,7 +84,7 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
         target = tellTarget(
             forecastTarget(model.box, model.region, model.rest, model.rehearsal, controls, options.fullScale),
             controls.target.kind, options.fullScale, unit, terminal);
-    const auto make = [&] { return std::make_unique<BlackBoxPredistorter>(model, rate, controls); };
+    const auto make = [&] { return std::make_unique<BlackBoxPredistorter>(model, rate, controls, options.coupling); };
     const auto told = [&](double before, double after, const BlackBoxPredistorter::Meters& meters) {
         beyond = beyond || meters.regionReduction > noticed;
         limited = limited || beyond || wasLimited(meters);

@@ -6,6 +6,7 @@
 
 #include "Engine/BlackBox/BlackBox.h"
 #include "Engine/Datasheet/KnownScale.h"
+#include "Engine/Predistortion/AmplifierCoupling.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/WavFile.h"
 
@@ -28,6 +29,7 @@ struct PredistortArguments {
     double amount = 1.0, margin = 0.0;
     std::optional<double> coilResistance;  ///< ohm, of a model without physics
     int oversampling = 2;
+    AmplifierCoupling coupling;
     KnownScale known;
     TargetArguments target;
 };
@@ -68,6 +70,7 @@ void addPower(std::vector<std::string>& row, const PredistortArguments& options,
 }
 
 void requireValid(const PredistortionControls&);  ///< Throws Error (usage).
+void requireValid(const AmplifierCoupling&);      ///< The same.
 
 /// One channel through a predistorter of its own, by which its delay is taken out again.
 template <class AnyPredistorter>

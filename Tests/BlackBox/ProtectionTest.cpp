@@ -2,6 +2,7 @@
 // What comes out of a black box's predistorter is given to the model as its own class simulates it, without any bound:
 // excursion, voltage and heat are counted there, not by the meters.
 #include "BlackBox/RandomModels.h"
+#include "Predistortion/Amplified.h"
 #include "Predistortion/Programme.h"
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
@@ -89,6 +90,34 @@ TEST_CASE("Whatever is played, a black box goes no farther than its limit", "[pr
     }
     INFO("worst " << worst << ", mean " << kept);
     CHECK(kept > 0.5);  // it does not simply turn all down
+}
+
+TEST_CASE("Behind an amplifier that is stated a black box keeps nearly to its limit, where it went to 1.6 of it",
+          "[protection]")
+{
+    Draw draw(4);
+    double worst = 0.0;
+    for (int run = 0; run < 40; ++run) {
+        const auto& one = known(21 + run % 6);
+        PredistortionControls controls;
+        controls.displacementLimit = one.box.region.farthest * draw.within(0.15, 0.9);
+        const AmplifierCoupling amplifier {run % 2 == 0 ? 2.0 : 5.0, 1 + run % 2};
+        auto programme = drawnProgramme(draw, one.resonance, protectedRate, 1.5);
+        const double level = one.box.box.stimulus.peak * std::exp(draw.within(-1.5, 3.0));
+        for (auto& sample : programme.samples)
+            sample *= level;
+        BlackBoxPredistorter predistorter(one.box, protectedRate, controls, amplifier);
+        std::vector<double> out(programme.samples.size());
+        predistorter.process(programme.samples.data(), out.data(), out.size());
+        const double reached = moved(one.model, amplified(amplifier, out, protectedRate)).cwiseAbs().maxCoeff()
+                               / controls.displacementLimit;
+        INFO("run " << run << ": " << programme.name << " at " << level / one.box.box.stimulus.peak
+                    << " of the peak, limit " << controls.displacementLimit / one.box.region.farthest
+                    << " of the region, order " << amplifier.order << ": reached " << reached);
+        CHECK(reached < 1.08);  // what bends is predicted as without the amplifier
+        worst = std::max(worst, reached);
+    }
+    CHECK(worst > 0.9);
 }
 
 TEST_CASE("The heat of a coil that is counted to take all of a black box's voltage keeps its limit", "[protection]")

@@ -156,6 +156,27 @@ TEST_CASE("predistort says when a limit was reached", "[cli]")
     CHECK(document.at("margin") == 0.1);
     CHECK(document.at("channels")[0].at("power").get<double>() < 0.5);
     CHECK(document.at("channels")[0].at("powerReduction").get<double>() > 3.0);
+    CHECK(document.at("coupling") == 0.0);
+}
+
+TEST_CASE("predistort limits the motion behind an amplifier that passes no constant voltage", "[cli][predistort]")
+{
+    const Scratch scratch;
+    const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.9)}), out = (scratch / "out.wav").string();
+    const auto bentBy = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "0.002"};
+        words.insert(words.end(), more.begin(), more.end());
+        words.emplace_back("--json");
+        const auto document = documentOf(runProgram(scratch.folder(), words), "excursion-predistort");
+        CHECK(document.at("coupling") == (more.empty() ? 0.0 : 5.0));
+        CHECK(document.at("couplingOrder") == (more.empty() ? 1 : 2));
+        CHECK(document.at("channels")[0].at("displacement").get<double>() < 0.00202);
+        return bytesOf(out);
+    };
+    CHECK(bentBy({}) != bentBy({"--coupling", "5", "--coupling-order", "2"}));
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--coupling", "50"}, scratch, "--coupling");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--coupling-order", "3"}, scratch,
+                "--coupling-order");
 }
 
 TEST_CASE("a limit in metres wants a motion that is known", "[cli][predistort]")

@@ -7,6 +7,7 @@
 #include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Numerics/Parallel.h"
 #include "Engine/Predistortion/Predistorter.h"
 
 #include <catch2/catch.hpp>
@@ -15,6 +16,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace excursion;
@@ -49,7 +51,7 @@ Model quickDriver(double resonance)
     return model;
 }
 
-/// How far, in units of the limit, the simulated driver goes.
+/// How far, in units of the limit, the simulated driver goes; infinite if there was a fault.
 /// @param level  of the tone; 1 would take a linear driver to the limit
 double reached(const Model& model, double rate, double frequency, double phase, double level, double seconds)
 {
@@ -66,7 +68,8 @@ double reached(const Model& model, double rate, double frequency, double phase, 
     controls.displacementLimit = limit;
     Predistorter engine(model, {rate, 2}, controls);
     const auto out = through(engine, u);
-    CHECK(engine.collectMeters().faults == 0);
+    if (engine.collectMeters().faults > 0)
+        return infinity;
     return peak(simulate(model, out, rate, {}).find(Quantity::displacement)->samples) / limit;
 }
 
@@ -75,28 +78,43 @@ struct FastCone {
     Model model;
 };
 
+/// Whether a tick, or a step of what is looked at, is long against a period: else nothing here differs from what the
+/// studies of random drivers try.
+bool quick(const Model& model, double rate) { return 16.0 * resonanceOf(model) > 0.03 * rate; }
+
 /// @param frequencies  of the tones, in units of the resonance; each is replaced by the nearest fs/(16 k)
 void checkTones(const std::vector<FastCone>& cones, const std::vector<double>& frequencies,
                 const std::vector<double>& levels, double seconds)
 {
-    double worst = 0.0;
+    struct Tone {
+        const FastCone* cone;
+        double rate, frequency, phase, level, most;
+    };
+    std::vector<Tone> tones;
     for (const auto& cone : cones)
         for (const double rate : {8000.0, 11025.0, 22050.0, 48000.0}) {
-            const double f0 = resonanceOf(cone.model);
+            if (!quick(cone.model, rate))
+                continue;
             std::set<int> ticks;
             for (const double f : frequencies)
-                ticks.insert(std::max(1, static_cast<int>(std::lround(rate / (16.0 * f * f0)))));
+                ticks.insert(std::max(1, static_cast<int>(std::lround(rate / (16.0 * f * resonanceOf(cone.model))))));
             for (const int k : ticks)
                 for (const double phase : {0.0, 0.25 * std::numbers::pi})
-                    for (const double level : levels) {
-                        const double frequency = rate / (16.0 * k);
-                        const double most = reached(cone.model, rate, frequency, phase, level, seconds);
-                        INFO(cone.name << " (" << f0 << " Hz) at " << rate << " Hz, " << frequency << " Hz, phase "
-                                       << phase << ", " << level << " x the limit");
-                        CHECK(most < 1.01);
-                        worst = std::max(worst, most);
-                    }
+                    for (const double level : levels)
+                        tones.push_back({&cone, rate, rate / (16.0 * k), phase, level, 0.0});
         }
+    inParallel(tones.size(), std::thread::hardware_concurrency(), {}, [&](std::size_t n) {
+        auto& tone = tones[n];
+        tone.most = reached(tone.cone->model, tone.rate, tone.frequency, tone.phase, tone.level, seconds);
+        return true;
+    });
+    double worst = 0.0;
+    for (const auto& tone : tones) {
+        INFO(tone.cone->name << " (" << resonanceOf(tone.cone->model) << " Hz) at " << tone.rate << " Hz, "
+                             << tone.frequency << " Hz, phase " << tone.phase << ", " << tone.level << " x the limit");
+        CHECK(tone.most < 1.01);
+        worst = std::max(worst, tone.most);
+    }
     WARN("at most " << 100.0 * worst << " % of the excursion's limit");
     CHECK(worst > 0.9);  // not by doing nothing
 }
@@ -119,5 +137,5 @@ TEST_CASE("The excursion's limit holds at tones of whole ticks for every driver"
         cones.push_back({name, fastFactoryModel(name)});
     for (const double resonance : {800.0, 1000.0, 1200.0})
         cones.push_back({"quick driver", quickDriver(resonance)});
-    checkTones(cones, {0.4, 0.7, 1.0, 1.5, 2.2, 3.0}, {1.02, 1.06, 1.25, 1.7, 3.0}, 0.6);
+    checkTones(cones, {0.4, 0.7, 1.0, 1.5, 2.2, 3.0}, {1.02, 1.25, 3.0}, 0.6);
 }

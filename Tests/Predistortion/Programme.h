@@ -50,6 +50,7 @@ inline std::vector<double> pinkNoise(Draw& draw, std::size_t length)
 struct Programme {
     std::string name;
     std::vector<double> samples;  ///< peaks about 1 to 2; the first 5 ms are silent
+    bool repeats = false;         ///< within a second
 };
 
 /// Something that is played: a tone, noise, bursts, a square wave, 5 Hz, steps, drums with noise, two tones.
@@ -66,6 +67,7 @@ inline Programme drawnProgramme(Draw& draw, double resonance, double rate, doubl
     static const char* const names[] {"tone", "pink noise", "bursts", "square wave",
                                       "5 Hz", "steps",      "drums",  "two tones"};
     programme.name = names[kind];
+    programme.repeats = kind != 1 && kind != 5 && kind != 6;
     for (auto n = static_cast<std::size_t>(0.005 * rate); n < out.size(); ++n) {
         const double t = static_cast<double>(n) / rate;
         switch (kind) {

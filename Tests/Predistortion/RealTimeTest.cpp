@@ -82,4 +82,16 @@ TEST_CASE("Nothing in process allocates, locks or calls the system", "[realtime]
     }
 }
 
+TEST_CASE("Nor does a limit that acts behind an amplifier that passes no constant voltage", "[realtime]")
+{
+    for (const int order : {1, 2}) {
+        Predistorter engine(everything(), {48000.0, 2, {5.0, order}}, {0.5, 1e-3});
+        auto u = burst(48000.0, 0.5, 10.0);
+        const auto counts = countIn([&] { engine.process(u.data(), u.data(), u.size()); });
+        CHECK(counts.allocations == 0);
+        CHECK(counts.locks == 0);
+        CHECK(engine.collectMeters().displacementReduction > 3.0);
+    }
+}
+
 #endif

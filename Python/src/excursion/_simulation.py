@@ -128,6 +128,8 @@ def predistort(
     limit_u: float | None = None,
     limit_p: float | None = None,
     margin: float | None = None,
+    coupling: float | None = None,
+    coupling_order: int | None = None,
     target_f0: float | None = None,
     target_q: float | None = None,
     target_box: float | None = None,
@@ -147,6 +149,9 @@ def predistort(
     :param limit_u: V that may come out at most; by default no limit
     :param limit_p: W of heat in the voice coil, averaged over 1 s; by default no limit
     :param margin: the limits hold for every loudspeaker whose parameters differ by at most this share, 0 to 0.3
+    :param coupling: Hz, corner of the high-pass between the output and the loudspeaker, behind which the limit of the
+        motion is to hold; by default a constant voltage passes
+    :param coupling_order: 1, the default, or 2: the order of that high-pass
     :param target_f0: Hz at which the linearized loudspeaker is to resonate; by default where the driver does
     :param target_q: and with which total Q; by default the driver's own. What the two take is in the document, `target`
     :param target_box: in their place: litres of the closed box as in which it is to move
@@ -176,6 +181,8 @@ def predistort(
         "--limit-u": limit_u,
         "--limit-p": limit_p,
         "--margin": margin,
+        "--coupling": coupling,
+        "--coupling-order": coupling_order,
         "--target-f0": target_f0,
         "--target-q": target_q,
         "--target-box": target_box,

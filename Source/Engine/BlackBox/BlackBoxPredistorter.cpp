@@ -37,7 +37,7 @@ RehearsedBox::RehearsedBox(const BlackBox& known, const Region& where, const Res
 }
 
 BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sampleRate,
-                                           const PredistortionControls& controls)
+                                           const PredistortionControls& controls, const AmplifierCoupling& coupling)
     : toModel_(sampleRate, model.box.linear.sampleRate),
       back_(model.box.linear.sampleRate, sampleRate),
       linearizer_(model.box, model.region, model.rest, model.rehearsal.design),
@@ -50,7 +50,7 @@ BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sam
                   std::ceil((linearizer_.latency() + back_.reach()) * sampleRate / model.box.linear.sampleRate))
               + (toModel_.reach() > 0 ? 2 : 0)),
       target_(ownLinearPart(model.box), sampleRate),
-      protection_(model.box, model.region, model.rest, model.rehearsal, sampleRate, behind_),
+      protection_(model.box, model.region, model.rest, model.rehearsal, sampleRate, behind_, coupling),
       truth_(model.box, model.region),
       x_(truth_.states()),
       z_(truth_.seen() + 1),

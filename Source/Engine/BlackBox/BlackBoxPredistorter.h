@@ -42,7 +42,8 @@ struct RehearsedBox {
 class BlackBoxPredistorter {
 public:
     /// Throws Error (usage) for a rate that is more than 16 times the model's or less than a sixteenth.
-    BlackBoxPredistorter(const RehearsedBox&, double sampleRate, const PredistortionControls& = {});
+    BlackBoxPredistorter(const RehearsedBox&, double sampleRate, const PredistortionControls& = {},
+                         const AmplifierCoupling& = {});
 
     int latency() const { return protection_.latency() + behind_; }  ///< samples; fixed
     void reset();

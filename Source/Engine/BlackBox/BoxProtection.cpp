@@ -27,11 +27,12 @@ double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 }  // namespace
 
 BoxProtection::BoxProtection(const BlackBox& box, const Region& region, const Rest& rest,
-                             const BlackBoxRehearsal& rehearsal, double sampleRate, int late)
+                             const BlackBoxRehearsal& rehearsal, double sampleRate, int late,
+                             const AmplifierCoupling& coupling)
     : limiter_(box, region, sampleRate),
       motion_(box),
-      protection_(motion_.linear, {sampleRate, 1}, coneDelay),
-      cone_(motion_.linear, sampleRate),
+      protection_(behind(motion_.linear, coupling), {sampleRate, 1}, coneDelay),
+      cone_(behind(motion_.linear, coupling), sampleRate),
       recovery_(static_cast<int>(silenceTime * sampleRate), static_cast<int>(riseTime * sampleRate)),
       apart_(static_cast<int>(apartTime * box.linear.sampleRate)),
       nearness_(late / Protection::tick + 2),

@@ -26,7 +26,9 @@ namespace excursion {
 class BoxProtection {
 public:
     /// @param late  samples from here to the output; a decision must last that long
-    BoxProtection(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&, double sampleRate, int late);
+    /// @param coupling  of what follows; the correction asks for no constant voltage behind it
+    BoxProtection(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&, double sampleRate, int late,
+                  const AmplifierCoupling& coupling = {});
 
     /// What of a limit of the excursion is left to the signal.
     static double share(const BlackBox&, const BlackBoxRehearsal&, double margin);

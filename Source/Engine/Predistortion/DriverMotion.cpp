@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace excursion {
 namespace {
@@ -46,6 +47,34 @@ std::vector<double> holdingHeat(const Model& model, double sampleRate, double gr
     return heat;
 }
 
+/// Adds the means of the correction of tones about the resonance, as their amplitude grows.
+void addMeanCorrection(LinearMotion& motion, const Model& model)
+{
+    constexpr int perPeriod = 64, settling = 2;
+    motion.leastCorrection.resize(motion.holding.size(), 0.0);
+    motion.mostCorrection.resize(motion.holding.size(), 0.0);
+    for (const double octaves : {-1.0, 0.0, 1.0}) {
+        const double frequency = motion.resonance * std::exp2(octaves),
+                     perVolt = std::abs(respond(model, {Quantity::displacement}, {frequency}).front().value.front());
+        Reference reference(model, perPeriod * frequency);
+        Inverse inverse(model, perPeriod * frequency);
+        for (std::size_t k = 1; k < motion.holding.size(); ++k) {
+            const double volts = static_cast<double>(k) * motion.holdingStep / perVolt;
+            reference.reset();
+            inverse.reset();
+            double mean = 0.0;
+            for (int n = 0; n < (settling + 1) * perPeriod; ++n) {
+                const double u = volts * std::sin(2.0 * std::numbers::pi * n / perPeriod),
+                             correction = inverse.step(reference.step(u)) - u;
+                if (n >= settling * perPeriod)
+                    mean += correction / perPeriod;
+            }
+            motion.leastCorrection[k] = std::min(motion.leastCorrection[k], mean);
+            motion.mostCorrection[k] = std::max(motion.mostCorrection[k], mean);
+        }
+    }
+}
+
 double worstSensitivity(const Model& model, double f0)
 {
     std::vector<double> frequency;
@@ -81,6 +110,14 @@ LinearMotion linearMotion(const Model& model, double sampleRate)
     motion.ohms = model.electrical() ? model.baseParameter("Re").value : 0.0;
     motion.holdingStep = stepOf(model);
     motion.holding = holdingHeat(model, sampleRate, motion.holdingStep);
+    return motion;
+}
+
+LinearMotion linearMotion(const Model& model, double sampleRate, const AmplifierCoupling& coupling)
+{
+    auto motion = behind(linearMotion(model, sampleRate), coupling);
+    if (!coupling.passesConstant() && motion.holdingStep > 0.0)
+        addMeanCorrection(motion, model);
     return motion;
 }
 

@@ -8,9 +8,9 @@
 
 namespace excursion {
 
-Foresight::Foresight(const LinearMotion& motion, const Reference& reference, const Eigen::VectorXd& times,
+Foresight::Foresight(const LinearMotion& motion, const Eigen::MatrixXd& basis, const Eigen::VectorXd& times,
                      Eigen::Index steps, double step, double since)
-    : coasting(times.size(), reference.basis().cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
+    : coasting(times.size(), basis.cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
 {
     const auto n = motion.A.rows();
     // The input beside the state.
@@ -25,7 +25,7 @@ Foresight::Foresight(const LinearMotion& motion, const Reference& reference, con
     for (Eigen::Index i = 0; i < times.size(); ++i) {
         // x after a time, per state at its start and per input that is held meanwhile
         const Eigen::RowVectorXd all = motion.displacement * after(times[i]).topRows(n);
-        coasting.row(i) = all.head(n) * reference.basis();
+        coasting.row(i) = all.head(n) * basis;
         // From the end of the last step that has begun by then; the time grows by a step each round.
         const auto last = std::min(steps, static_cast<Eigen::Index>(std::floor((times[i] + since) / step)));
         Eigen::RowVectorXd then = motion.displacement

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Predistortion/Bands.h"
-#include "Engine/Predistortion/Reference.h"
+#include "Engine/Predistortion/LinearMotion.h"
 
 #include <Eigen/Core>
 
@@ -13,15 +13,15 @@ namespace excursion {
 ///     x(t_i) = c exp(A t_i) z + sum_k h_ik p_k,   h_ik = the integral of c exp(A (t_i - s)) B over the part of step k
 ///         before t_i and after now.
 struct Foresight {
-    Eigen::MatrixXd coasting;  ///< times x state of the Reference, m
+    Eigen::MatrixXd coasting;  ///< times x state, m
     Eigen::MatrixXd driven;    ///< times x steps, m/V
 
-    /// @param reference  defines the coordinates of the state
+    /// @param basis      the state of the motion per state that is foreseen from, see Reference::basis()
     /// @param times      s, ascending
     /// @param steps      number of steps from now on
     /// @param step       s, length of each
     /// @param since      s, how long before now the first step began; less than a step
-    Foresight(const LinearMotion&, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps,
+    Foresight(const LinearMotion&, const Eigen::MatrixXd& basis, const Eigen::VectorXd& times, Eigen::Index steps,
               double step, double since);
 };
 

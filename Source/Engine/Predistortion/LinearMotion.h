@@ -12,7 +12,10 @@ namespace excursion {
 struct LinearMotion {
     Eigen::MatrixXd A, B;             ///< states x states, states x 1; u in V (or N)
     Eigen::RowVectorXd displacement;  ///< m per state
-    double resonance = 0.0;           ///< Hz
+    /// states x 1, or empty: what a correction does besides keeping the motion linear, per V of it. None of it is seen
+    /// where a constant voltage passes (AmplifierCoupling.h).
+    Eigen::MatrixXd correction;
+    double resonance = 0.0;  ///< Hz
     /// Relative change of the displacement per relative error of the model: it can differ by exp(uncertainty margin).
     double uncertainty = 1.0;
 
@@ -21,6 +24,8 @@ struct LinearMotion {
     double currentByInput = 0.0;        ///< A per V, direct
     double holdingStep = 0.0;           ///< m; 0: the power that holds the cone is not known
     std::vector<double> holding {0.0};  ///< W, power that holds the cone at 0, 1, 2, ... such steps, on the worse side
+    /// V, bounds of the mean of the correction while the cone swings by 0, 1, 2, ... such steps to either side
+    std::vector<double> leastCorrection {0.0}, mostCorrection {0.0};
 };
 
 }  // namespace excursion

@@ -7,17 +7,21 @@
 namespace excursion {
 namespace {
 
-constexpr double followTime = 0.2;  // s, until a cone that is told where to go is there
-constexpr double joinTime = 0.025;  // s, time constant; far shorter, so that they are alike by then
+constexpr double arrivalTime = 0.2;  // s, until a cone that is told where to go is there
+constexpr double joinTime = 0.025;   // s, time constant; far shorter, so that they are alike by then
 constexpr int mostCorrections = 3;
 
 }  // namespace
 
-Linearizer::Linearizer(const Model& model, double sampleRate)
+Linearizer::Linearizer(const Model& model, double sampleRate, const AmplifierCoupling& coupling)
     : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)},
       cone_(wish_),
       joining_(1.0 - std::exp(-1.0 / (joinTime * sampleRate))),
-      settling_(static_cast<int>(followTime * sampleRate))
+      settling_(static_cast<int>(arrivalTime * sampleRate)),
+      withheld_(coupling, sampleRate),
+      passed_(1.0 - withheld_.direct()),
+      perPassed_(1.0 / passed_),
+      state_(static_cast<std::size_t>(wish_.reference.state().size()) + withheld_.order())
 {
 }
 
@@ -31,14 +35,28 @@ void Linearizer::reset()
     follows_ = false;
     alike_ = 0;
     wanted_ = 0.0;
+    withheld_.reset();
+}
+
+Eigen::Map<const Eigen::VectorXd> Linearizer::state()
+{
+    const auto driver = cone().state();
+    if (withheld_.order() == 0)
+        return driver;
+    std::copy(driver.begin(), driver.end(), state_.begin());
+    for (std::size_t k = 0; k < withheld_.order(); ++k)
+        state_[static_cast<std::size_t>(driver.size()) + k] = withheld_.state(k);
+    return {state_.data(), static_cast<Eigen::Index>(state_.size())};
 }
 
 void Linearizer::rest()
 {
     Warmth kept;
     keep(kept);
+    const auto charged = withheld_;
     reset();
     warm(kept);
+    withheld_ = charged;
 }
 
 void Linearizer::warm(const Warmth& warmth)
@@ -75,15 +93,18 @@ double Linearizer::step(double u, double amount, double limit)
         wish_ = cone_;
         follows_ = false;
     }
-    wish_.step(u);
-    wanted_ = u + amount * (wish_.made - u);
-    const double out = std::clamp(wanted_, -limit, limit);
+    // Where the reference goes is free, as long as the driver is then given what takes it there: a guess of l does.
+    const double kept = withheld_.coming(), left = u - (kept + withheld_.direct() * withheld_.latest());
+    wish_.step(left);
+    wanted_ = u + amount * (perPassed_ * (wish_.made + kept) - u);
+    const double out = std::clamp(wanted_, -limit, limit), given = passed_ * out - kept;
+    withheld_.take(out);
     if (follows_) {
-        cone_.step(u);
-        cone_.moveTo(out);
+        cone_.step(left);
+        cone_.moveTo(given);
         wish_.inverse.join(cone_.inverse, alike_ > 0 ? joining_ : 0.0);
     } else if (out != wanted_) {
-        wish_.moveTo(out);
+        wish_.moveTo(given);
     }
     return out;
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Predistortion/CouplingFilter.h"
 #include "Engine/Predistortion/Inverse.h"
 #include "Engine/Predistortion/Reference.h"
+
+#include <vector>
 
 namespace excursion {
 
@@ -17,19 +20,25 @@ namespace excursion {
 /// driver. What is slow (the coil's heat) is that of the driver in both. Once the amount is 1 again, the memories of
 /// the first pair go over to those of the second within a fraction of a second, and then the second one is given up.
 ///
+/// Behind an amplifier that withholds l of the output (AmplifierCoupling.h), the driver gets u' - l. So the reference
+/// is given u - l, and the output is what the inverse asks for plus l. Then the mean of the correction is in l: no
+/// constant voltage reaches the driver, the reference goes where the cone does, and what is asked of the driver stays
+/// right there.
+///
 /// Thread: after construction nothing allocates, locks or throws.
 class Linearizer {
 public:
     /// @param sampleRate  Hz, of step()
-    Linearizer(const Model&, double sampleRate);
+    Linearizer(const Model&, double sampleRate, const AmplifierCoupling& = {});
 
     void reset();
-    void rest();  ///< as reset(), but a coil stays as warm as it is
+    void rest();  ///< as reset(), but a coil stays as warm as it is, and an amplifier as charged
 
     void keep(Warmth& warmth) const { (follows_ ? cone_ : wish_).inverse.keep(warmth); }  ///< of the cone: what is slow
     void warm(const Warmth&);
     /// While nothing is linearized: the coil goes on, for a time, by the motion that the driver has instead.
     void drift(const MotionPoint&, double seconds);
+    void pass(double out) { withheld_.take(out); }       ///< the same of the amplifier, which is given these volts
     double rise() { return followed().inverse.rise(); }  ///< ohm, of the coil's resistance
 
     /// @param u       V (or N for a driver without a coil)
@@ -43,6 +52,8 @@ public:
     /// The cone: its state, as that of a linear driver with the same motion (also for prediction), its motion, m, m/s,
     /// ..., and its current, A.
     const Reference& cone() const { return follows_ ? cone_.reference : wish_.reference; }
+    /// The state of the cone, then that of the amplifier.
+    Eigen::Map<const Eigen::VectorXd> state();
     double current() const { return follows_ ? cone_.inverse.current() : wish_.inverse.current(); }
 
 private:
@@ -61,6 +72,10 @@ private:
     int alike_ = 0,
         settling_;  ///< alike_: samples with an amount of 1; settling_: after how many of them the two pairs coincide
     double wanted_ = 0.0;
+    CouplingFilter withheld_;
+    double passed_;  ///< share of a sample that the amplifier passes at once
+    double perPassed_;
+    std::vector<double> state_;  ///< room for state()
 };
 
 }  // namespace excursion

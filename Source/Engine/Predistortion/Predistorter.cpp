@@ -18,6 +18,18 @@ constexpr double nearFrom = 0.6, nearTo = 0.8;           // of the limit of the 
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 
+/// The state of the motion behind an amplifier per state of a Linearizer; empty without an amplifier.
+Eigen::MatrixXd basisBehind(const Model& model, const RealTimeOptions& options)
+{
+    if (options.coupling.passesConstant())
+        return {};
+    const auto driver = Reference(model, options.sampleRate).basis();
+    const auto n = driver.rows(), more = Eigen::Index {options.coupling.order};
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(n + more, n + more);
+    basis.topLeftCorner(n, n) = driver;
+    return basis;
+}
+
 double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-5)) : 0.0; }
 
 }  // namespace
@@ -25,9 +37,9 @@ double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(st
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
     : oversampling_((requireRunnable(model, options), options.oversampling)),
       target_(OwnLinearPart(model), options.sampleRate),
-      protection_(linearMotion(undonePart(model), options.sampleRate), options,
-                  0.5 * oversampling_.latency() + 1.0 / options.oversampling),
-      linearizer_(undonePart(model), options.sampleRate * options.oversampling),
+      protection_(linearMotion(undonePart(model), options.sampleRate, options.coupling), options,
+                  0.5 * oversampling_.latency() + 1.0 / options.oversampling, basisBehind(undonePart(model), options)),
+      linearizer_(undonePart(model), options.sampleRate * options.oversampling, options.coupling),
       plausible_(model),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
       plain_(undonePart(model), options.sampleRate),
@@ -61,7 +73,7 @@ void Predistorter::reset()
     near_.jump(0.0);
     effort_.jump(1.0);
     outcome_ = {};
-    squares_ = last_ = left_ = betweenPeak_ = 0.0;
+    correction_ = squares_ = last_ = left_ = betweenPeak_ = 0.0;
 }
 
 void Predistorter::set(const PredistortionControls& controls)
@@ -137,6 +149,7 @@ void Predistorter::bend(double& sample, double amount)
         outcome_.astray = outcome_.astray || out != linearizer_.wanted();
         outcome_.wanted = std::max(outcome_.wanted, std::abs(linearizer_.wanted()));
         squares_ += i * i;
+        correction_ += out - asked;
     }
     sample = last_ = out + left_;
     left_ *= decay_;
@@ -157,9 +170,10 @@ void Predistorter::begin(const double* in, std::size_t n)
     if (protection_.due()) {
         outcome_.hotter = ohms_ > 0.0 ? 1.0 + linearizer_.rise() / ohms_ : 1.0;
         outcome_.heat = ohms_ * outcome_.hotter * squares_ / static_cast<double>(Protection::tick * factor);
-        protection_.decide(linearizer_.cone().state(), outcome_);
+        outcome_.correction = correction_ / static_cast<double>(Protection::tick * factor);
+        protection_.decide(linearizer_.state(), outcome_);
         outcome_ = {};
-        squares_ = 0.0;
+        correction_ = squares_ = 0.0;
         const auto& factors = protection_.factors();
         least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage),
                   std::min(least_.power, factors.power)};
@@ -181,6 +195,9 @@ void Predistorter::begin(const double* in, std::size_t n)
         if (bends())
             for (std::size_t s = 0; s < factor; ++s)
                 bend(between_[k * factor + s], on_ ? effort * (amount + (1.0 - amount) * near) : amount);
+        else
+            for (std::size_t s = 0; s < factor; ++s)
+                linearizer_.pass(between_[k * factor + s]);
     }
     betweenPeak_ = 0.0;
     for (std::size_t k = 0; k < n * factor; ++k)

@@ -99,7 +99,8 @@ private:
     /// near_: the excursion is near its limit; effort_: factor of the power limit on the amount
     Glide amount_, near_, effort_;
     Protection::Outcome outcome_;
-    double squares_ = 0.0;  ///< of the current, sum over the tick and the samples of the higher rate, A^2
+    double correction_ = 0.0;  ///< sum over the tick and the samples of the higher rate, V
+    double squares_ = 0.0;     ///< of the current, sum over the tick and the samples of the higher rate, A^2
     /// V: last_: the latest sample of the higher rate; left_: the remainder of the step that a fault makes
     double last_ = 0.0, left_ = 0.0, decay_;
     double betweenPeak_ = 0.0;  ///< V, of the last block

@@ -15,6 +15,9 @@ constexpr double firstCorner = 2.5, secondCorner = 12.0;
 // periods of the resonance: a cone left alone has gone farthest long before
 constexpr double swing = 0.75;
 constexpr Eigen::Index coastingPoints = 32;
+// The same of a cone that an amplifier goes on to drive, with what it has withheld.
+constexpr double settling = 3.0;
+constexpr Eigen::Index drivenPoints = 9;
 // of the limit; the rest is for points between those that are looked at
 constexpr double wishShare = 0.96, planShare = 0.992;
 constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
@@ -28,11 +31,22 @@ constexpr double shortTick = 0.05;
 constexpr double farFromLimit = 0.7;                         // of the limit: more than a look can miss
 constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
 constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
+constexpr double mostRange = 0.9;                            // of the limit, that a shift may take
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
 
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
 
-Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
+/// From now on, s.
+Eigen::VectorXd coastingTimes(const LinearMotion& motion)
+{
+    const double period = 1.0 / motion.resonance;
+    const auto more = motion.correction.size() > 0 ? drivenPoints : 0;
+    Eigen::VectorXd times(coastingPoints + 1 + more);
+    times.head(coastingPoints + 1) = Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing * period);
+    for (Eigen::Index k = 1; k <= more; ++k)
+        times[coastingPoints + k] = std::lerp(swing, settling, static_cast<double>(k) / drivenPoints) * period;
+    return times;
+}
 
 /// The largest half, quarter, ... of so many samples that is no longer than this many periods; at least one.
 int spacing(int samples, double periods, double f0, double rate)
@@ -43,14 +57,16 @@ int spacing(int samples, double periods, double f0, double rate)
 }
 
 /// While inputs are known, once a step or more often, then coasting.
-Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
+Eigen::VectorXd planTimes(const LinearMotion& motion, double rate, int known, int planStep)
 {
-    const int often = std::clamp(static_cast<int>(std::ceil(planStep * f0 / (lookPeriods * rate))), 1, 4),
+    const int often = std::clamp(static_cast<int>(std::ceil(planStep * motion.resonance / (lookPeriods * rate))), 1, 4),
               points = known / planStep * often;
-    Eigen::VectorXd times(points + coastingPoints);
+    const auto coasting = coastingTimes(motion);
+    const auto after = coasting.size() - 1;
+    Eigen::VectorXd times(points + after);
     for (int k = 0; k < points; ++k)
         times[k] = planStep * (k + 1.0) / (often * rate);
-    times.tail(coastingPoints) = coastingTimes(f0).tail(coastingPoints).array() + known / rate;
+    times.tail(after) = coasting.tail(after).array() + known / rate;
     return times;
 }
 
@@ -74,7 +90,8 @@ int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samp
 
 }  // namespace
 
-Protection::Protection(const LinearMotion& motion, const RealTimeOptions& options, double delay)
+Protection::Protection(const LinearMotion& motion, const RealTimeOptions& options, double delay,
+                       const Eigen::MatrixXd& basis)
     : rate_(options.sampleRate),
       settled_(ticks::in(settlingTime, rate_)),
       planStep_(spacing(planSamples, stepPeriods, motion.resonance, rate_)),
@@ -85,11 +102,13 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
       split_(firstCorner * motion.resonance, secondCorner * motion.resonance, rate_),
       wish_ {Reference(motion, rate_ / wishStep_), Reference(motion, rate_ / wishStep_),
              Reference(motion, rate_ / wishStep_)},
-      coast_(motion, wish_.front(), coastingTimes(motion.resonance), 0, 1.0, 0.0),
-      ahead_(motion, wish_.front(),
-             planTimes(motion.resonance, rate_, roundedUp(committed_ + latency, planStep_), planStep_),
+      coast_(motion, wish_.front().basis(), coastingTimes(motion), 0, 1.0, 0.0),
+      ahead_(motion, basis.size() > 0 ? basis : wish_.front().basis(),
+             planTimes(motion, rate_, roundedUp(committed_ + latency, planStep_), planStep_),
              roundedUp(committed_ + latency, planStep_) / planStep_, planStep_ / rate_,
              (committed_ - delay + 0.5) / rate_),
+      shift_(motion, wishStep_ / rate_, tick / rate_, coastingTimes(motion),
+             planTimes(motion, rate_, roundedUp(committed_ + latency, planStep_), planStep_)),
       uncertainty_(motion.uncertainty),
       sent_(static_cast<std::size_t>(committed_), 0.0),
       displacement_(limitTime, rate_ / tick),
@@ -120,6 +139,7 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
     parts_.resize(ahead_.coasting.rows(), static_cast<Eigen::Index>(bands));
     state_.resize(coast_.coasting.cols());
     coasted_.resize(coast_.coasting.rows());
+    aside_.resize(coast_.coasting.rows());
     wishes_.resize(coast_.coasting.rows(), static_cast<Eigen::Index>(bands));
     reset();
 }
@@ -129,6 +149,7 @@ void Protection::reset()
     split_.reset();
     for (auto& wish : wish_)
         wish.reset();
+    shift_.reset();
     for (auto& delayed : delayed_)
         delayed.fill(0.0);
     std::fill(sent_.begin(), sent_.end(), 0.0);
@@ -173,6 +194,7 @@ void Protection::set(const PredistortionControls& controls, bool on)
         std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
         for (auto& wish : wish_)
             wish.reset();
+        shift_.reset();
         sum_.fill(0.0);
         need_.fill(1.0);
         summed_ = place_ % wishStep_;  // steps end with the tick
@@ -192,15 +214,15 @@ void Protection::look()
         return;
     state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
     coasted_.noalias() = coast_.coasting * state_;
-    coasted_.array() += offset_;
+    aside_.setConstant(offset_);
+    shift_.addTo(aside_, coast_.coasting);
+    coasted_ += aside_;
     const double farthest = coasted_.cwiseAbs().maxCoeff() + reserve_;
     coasts_ = std::max(coasts_, farthest);
     if (farthest * limit > wishShare) {
         for (std::size_t b = 0; b < bands; ++b)
             wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
-        coasted_.setConstant(offset_);
-        const auto need = largestWithin(coasted_, wishes_, {1.0, 1.0, 1.0},
-                                        std::max(0.0, wishShare / limit - reserve_));
+        const auto need = largestWithin(aside_, wishes_, {1.0, 1.0, 1.0}, std::max(0.0, wishShare / limit - reserve_));
         for (std::size_t b = 0; b < bands; ++b)
             need_[b] = std::min(need_[b], need[b]);
     }
@@ -256,11 +278,25 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
     drive_.noalias() = partDrives_ * now;
     future_ = rest_;
     future_.noalias() += ahead_.driven * drive_;
-    share_ = (future_.cwiseAbs().maxCoeff() + reserve_) * limit;
+    if (shift_.happens()) {
+        shift_.foresee(std::min(future_.cwiseAbs().maxCoeff(), 1.0 / limit));
+        rest_ += shift_.middle();
+        future_ += shift_.middle();
+        share_ = ((future_.cwiseAbs() + shift_.range()).maxCoeff() + reserve_) * limit;
+    } else {
+        share_ = (future_.cwiseAbs().maxCoeff() + reserve_) * limit;
+    }
     if (share_ > planShare) {
         for (Eigen::Index b = 0; b < parts_.cols(); ++b)  // a product of two matrices would allocate
             parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
-        factors = largestWithin(rest_, parts_, factors, std::max(0.0, planShare / limit - reserve_));
+        const double room = std::max(0.0, planShare / limit - reserve_);
+        if (shift_.happens() && room > 0.0)
+            for (Eigen::Index i = 0; i < rest_.size(); ++i) {  // in a smaller room: the same as farther out
+                const double farther = room / (room - std::min(shift_.range()[i], mostRange * room));
+                rest_[i] *= farther;
+                parts_.row(i) *= farther;
+            }
+        factors = largestWithin(rest_, parts_, factors, room);
     }
 }
 
@@ -285,6 +321,7 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     offset_ = last.offset;
     reserve_ = last.reserve;
     most_ = last.most;
+    shift_.tell(last.correction);
     auto factors = forWish();
     factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
     factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, last.hotter, loud_.peak(), farthest_);
@@ -309,6 +346,7 @@ void Protection::wish(const Values& values)
         return;
     for (std::size_t b = 0; b < bands; ++b)
         wish_[b].step(most_ * sum_[b] / wishStep_);
+    shift_.step();
     sum_.fill(0.0);
     summed_ = 0;
     // At the end of a tick it is looked at in any case.

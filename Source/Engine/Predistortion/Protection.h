@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Predistortion/Bands.h"
+#include "Engine/Predistortion/ConeShift.h"
 #include "Engine/Predistortion/Foresight.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/HeatFactor.h"
@@ -46,7 +47,8 @@ public:
     static constexpr std::size_t bands = Bands::count;
 
     /// @param delay  samples from the cone's state that decide() gets to the next input
-    Protection(const LinearMotion&, const RealTimeOptions&, double delay);
+    /// @param basis  the state of the motion per state that decide() gets; empty: that of a Reference of this motion
+    Protection(const LinearMotion&, const RealTimeOptions&, double delay, const Eigen::MatrixXd& basis = {});
 
     void reset();
 
@@ -65,6 +67,7 @@ public:
     /// The output of the previous tick.
     struct Outcome {
         double asked = 0.0, wanted = 0.0;  ///< peaks of the linearizer's input and of the voltage that it asked for, V
+        double correction = 0.0;           ///< mean of the output without the input, V
         double heat = 0.0;                 ///< mean of R i^2, W
         double hotter = 1.0;               ///< R, the coil's resistance, over that of the cold one
         bool astray = false;               ///< the cone did not get everything that was asked for
@@ -114,6 +117,7 @@ private:
     Bands split_;
     std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
     Foresight coast_, ahead_;
+    ConeShift shift_;
     /// relative change of the excursion per relative error of the parameters
     double uncertainty_;
 
@@ -158,7 +162,7 @@ private:
     Factors factors_;
 
     // Room for decide().
-    Eigen::VectorXd future_, rest_, drive_, coasted_, state_;
+    Eigen::VectorXd future_, rest_, drive_, coasted_, aside_, state_;
     Eigen::MatrixXd parts_, partDrives_, wishes_;
 };
 

@@ -15,7 +15,7 @@ bool RealTimeOptions::isValid(std::string* reason) const
         return refuse(reason, "the sample rate must lie between 8000 and 768000 Hz");
     if (oversampling != 1 && oversampling != 2 && oversampling != 4)
         return refuse(reason, "oversampling can be 1, 2 or 4");
-    return true;
+    return coupling.isValid(reason);
 }
 
 bool PredistortionControls::isValid(std::string* reason) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Predistortion/AmplifierCoupling.h"
 #include "Engine/Predistortion/Target.h"
 
 #include <limits>
@@ -10,8 +11,9 @@ namespace excursion {
 
 /// Options that are fixed while a signal runs. A change needs a new Predistorter or Speaker.
 struct RealTimeOptions {
-    double sampleRate = 48000.0;  ///< Hz
-    int oversampling = 2;         ///< 1, 2 or 4
+    double sampleRate = 48000.0;      ///< Hz
+    int oversampling = 2;             ///< 1, 2 or 4
+    AmplifierCoupling coupling = {};  ///< behind a Predistorter; what plays a model hears none of it
     bool isValid(std::string* reason) const;
 };
 
