@@ -2,7 +2,7 @@
 #include "Engine/Loudspeaker/FitResponse.h"
 
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Numerics/LeastSquares.h"
+#include "Engine/Numerics/TrustRegion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -209,7 +209,7 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
         return std::isfinite(sum.cost);
     };
     const Eigen::VectorXd start = y;
-    auto summary = minimize(evaluate, y, lower, upper, options);
+    auto summary = minimizeInTrustRegion(evaluate, y, lower, upper, options);
     place(shifted(summary.usable() ? y : start));
     if (summary.usable())
         keepErrors(model, targets, active, values);
