@@ -107,8 +107,15 @@ double confidenceOf(const Vote& vote, bool besideUnknown)
     return least + (most - least) * merit;
 }
 
+/// Whether something that no model follows passes for noise.
+bool wanders(const Comparison& comparison)
+{
+    return std::any_of(comparison.channels.begin(), comparison.channels.end(),
+                       [](const ChannelComparison& c) { return c.wanderDb.has_value(); });
+}
+
 /// What is said of a rung whose next effect is known.
-/// @param besideUnknown  the whole leaves more than noise
+/// @param besideUnknown  the whole leaves more than noise, or what is told as noise is not
 Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Score>& scores, const Whole& whole,
                       bool besideUnknown)
 {
@@ -159,7 +166,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
     const auto reached = tryCompare(whole.model, record, {whole.fit.substeps, true}, progress.silent());
     if (!reached)
         return {};
-    const bool besideUnknown = record.noiseKnown && !(reached->chiSquaredPerValue < nearNoise);
+    const bool besideUnknown = record.noiseKnown && (!(reached->chiSquaredPerValue < nearNoise) || wanders(*reached));
     const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
     ScoreOptions test;
     test.threads = options.fit.threads;
