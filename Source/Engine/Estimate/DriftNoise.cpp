@@ -10,19 +10,14 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t terms = 4, fewestLines = 4 * terms;
-constexpr double widest = 1.0 / 32.0;  // of its frequency, where lines are dense
+constexpr std::size_t terms = 3, fewestLines = 5 * terms;
 
 /// Neighbouring lines that share their noise.
 std::vector<std::span<const int>> blocksOf(std::span<const int> lines)
 {
     std::vector<std::span<const int>> blocks;
     while (lines.size() >= fewestLines) {
-        std::size_t count = fewestLines;
-        while (count < lines.size() && lines[count] < (1.0 + widest) * lines.front())
-            ++count;
-        if (lines.size() - count < fewestLines)
-            count = lines.size();
+        const auto count = lines.size() < 2 * fewestLines ? lines.size() : fewestLines;
         blocks.push_back(lines.first(count));
         lines = lines.subspan(count);
     }
@@ -30,7 +25,7 @@ std::vector<std::span<const int>> blocksOf(std::span<const int> lines)
 }
 
 /// The columns of the local model on a block's lines.
-Eigen::MatrixXcd regressorsOf(std::span<const int> lines, const AveragedPeriod& input, const AveragedPeriod& output)
+Eigen::MatrixXcd regressorsOf(std::span<const int> lines, const AveragedPeriod& input)
 {
     const auto rows = static_cast<Eigen::Index>(lines.size());
     Eigen::MatrixXcd columns(rows, static_cast<Eigen::Index>(terms));
@@ -40,7 +35,7 @@ Eigen::MatrixXcd regressorsOf(std::span<const int> lines, const AveragedPeriod& 
         const int line = lines[static_cast<std::size_t>(r)];
         const auto k = static_cast<std::size_t>(line);
         const double kappa = (line - middle) / half;
-        columns.row(r) << input.mean[k], kappa * input.mean[k], output.mean[k], kappa * output.mean[k];
+        columns.row(r) << input.mean[k], kappa * input.mean[k], kappa * kappa * input.mean[k];
     }
     return columns;
 }
@@ -54,7 +49,7 @@ std::vector<double> noiseBesideDrift(const AveragedPeriods& averages, const Chan
     if (e.periods < 2)
         return {};
     const auto blocks = blocksOf(averages.lines());
-    std::vector<double> sums(blocks.size(), 0.0), freedom(blocks.size(), 0.0);
+    std::vector<double> own(averages.spectrum(channel, level, 0).mean.size(), 0.0), freedom(blocks.size(), 0.0);
     const double P = e.periods;
     for (int realization = 0; realization < e.realizations; ++realization) {
         const auto& input = averages.spectrum(take.input(), level, realization);
@@ -70,18 +65,26 @@ std::vector<double> noiseBesideDrift(const AveragedPeriods& averages, const Chan
                     deviation(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(p)) = periods[p][k]
                                                                                             - output.mean[k];
                 }
-            Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(regressorsOf(lines, input, output));
-            deviation.applyOnTheLeft(qr.householderQ().adjoint());
-            const auto left = deviation.rows() - qr.rank();
-            sums[b] += deviation.bottomRows(left).squaredNorm() / P;
-            freedom[b] += static_cast<double>(left) * (P - 1.0);
+            const auto columns = regressorsOf(lines, input);
+            const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(columns);
+            deviation -= columns * qr.solve(deviation);
+            for (std::size_t r = 0; r < lines.size(); ++r)
+                own[static_cast<std::size_t>(lines[r])] += deviation.row(static_cast<Eigen::Index>(r)).squaredNorm()
+                                                           / P;
+            freedom[b] += static_cast<double>(deviation.rows() - qr.rank()) * (P - 1.0);
         }
     }
-    std::vector<double> variance(averages.spectrum(channel, level, 0).mean.size(),
-                                 std::numeric_limits<double>::infinity());
-    for (std::size_t b = 0; b < blocks.size(); ++b)
+    std::vector<double> variance(own.size(), std::numeric_limits<double>::infinity());
+    constexpr double most = 6.0;  // times what neighbours share
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        double shared = 0.0;
         for (const int line : blocks[b])
-            variance[static_cast<std::size_t>(line)] = sums[b] / freedom[b];
+            shared += own[static_cast<std::size_t>(line)] / freedom[b];
+        const double lines = static_cast<double>(blocks[b].size());
+        for (const int line : blocks[b])
+            variance[static_cast<std::size_t>(line)] = std::max(shared, own[static_cast<std::size_t>(line)] * lines
+                                                                            / (most * freedom[b]));
+    }
     return variance;
 }
 

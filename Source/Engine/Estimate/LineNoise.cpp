@@ -73,14 +73,21 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
 }
 
 std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
-                                 const std::vector<int>& excited, const std::vector<double>& besideDrift)
+                                 const std::vector<int>& excited,
+                                 const std::function<std::vector<double>()>& besideDrift)
 {
     constexpr double enough = 6.0;
     const auto played = marked(excited, raw.size());
     const Tally silentOnes(raw, played, 0);
-    for (std::size_t k = 0; k < raw.size(); ++k)
-        if (played[k])
-            smooth[k] = std::min(smooth[k], silentOnes.around(k, reachAt(k), enough).value_or(besideDrift[k]));
+    std::vector<double> beside;
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+        if (!played[k])
+            continue;
+        const auto silent = silentOnes.around(k, reachAt(k), enough);
+        if (!silent && beside.empty())
+            beside = besideDrift();
+        smooth[k] = std::min(smooth[k], silent ? *silent : beside[k]);
+    }
     return smooth;
 }
 

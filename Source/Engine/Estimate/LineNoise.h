@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <vector>
 
 namespace excursion {
@@ -16,9 +17,10 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
 
 /// The same with what drifts left out of the noise of each played line: the noise of the silent lines around it where
 /// there are some, else that beside the drift; each where it is less, as a drift only adds to the scatter.
-/// @param besideDrift  of each line (noiseBesideDrift())
+/// @param besideDrift  gives that of each line (noiseBesideDrift()), and is asked only where it is needed
 std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
-                                 const std::vector<int>& excited, const std::vector<double>& besideDrift);
+                                 const std::vector<int>& excited,
+                                 const std::function<std::vector<double>()>& besideDrift);
 
 /// Of noise that is unknown: a thousandth of the signal on every line. Only its evenness matters.
 /// @param power  sum of |line|^2

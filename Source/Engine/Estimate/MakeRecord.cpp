@@ -114,7 +114,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     for (int level = 0; level < levels; ++level) {
         const auto steadyNoise = [&](const Channel& channel, std::vector<double> smooth) {
             return withoutDrift(std::move(smooth), averages.noise(channel, level).variance, e.lines,
-                                noiseBesideDrift(averages, channel, level));
+                                [&] { return noiseBesideDrift(averages, channel, level); });
         };
         const auto inputVariance = steadyNoise(take.input(),
                                                smoothVariance(averages.noise(take.input(), level).variance, e.lines));

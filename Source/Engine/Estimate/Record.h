@@ -27,8 +27,9 @@ struct Section {
 
     std::vector<std::vector<std::complex<double>>> measured;  ///< [channel][line], unnormalized DFT of the window
     std::vector<std::vector<double>> deviation;               ///< [channel][line], sqrt(E|noise|^2) of `measured`
-    /// [channel][line], the same with the noise of the silent lines around each played one, which does not drift with
-    /// what was played; empty where that is no other noise, and once it is in use
+    /// [channel][line], the same without what drifts with what was played: on a played line the noise of the silent
+    /// lines around it, or of what is not smooth (withoutDrift()); empty where that is no other noise, and once it is
+    /// in use
     std::vector<std::vector<double>> silentDeviation;
     /// [line], E|noise|^2 of the input's DFT; empty when unknown
     std::vector<double> inputVariance;
