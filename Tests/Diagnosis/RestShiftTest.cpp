@@ -55,7 +55,9 @@ TEST_CASE("A rest position that moves between two sections is told, and that is 
     CHECK_FALSE(setup.with([](double) { return 0.0; }).restShift);
     CHECK_FALSE(setup.with([](double) { return 2e-3; }).restShift);                            // the sensor's zero
     CHECK_FALSE(setup.with([&](double t) { return moved * t / setup.seconds(); }).restShift);  // which drifts
-    const double when = (2.0 / 4.0 + 0.02) * setup.seconds();                                  // while it settles
+    for (const double share : {0.1, 0.2, 0.4})                                                 // as it warms
+        CHECK_FALSE(setup.with([&](double t) { return moved * std::exp(-t / (share * setup.seconds())); }).restShift);
+    const double when = (2.0 / 4.0 + 0.02) * setup.seconds();  // while it settles
     const auto comparison = setup.with([&](double t) { return t < when ? 0.0 : -moved; });
     REQUIRE(comparison.restShift);
     CHECK(comparison.restShift->moved == Approx(moved).epsilon(0.1));
@@ -67,6 +69,21 @@ TEST_CASE("A rest position that moves between two sections is told, and that is 
     const auto read = comparisonFromJson(JsonField(toJson(comparison), "", "some.json"));
     REQUIRE(read.restShift);
     CHECK(read.restShift->moved == comparison.restShift->moved);
+}
+
+TEST_CASE("A suspension that is softer at 0 Hz than the model has not moved", "[compare]")
+{
+    const Setup setup;
+    auto record = makeRecord(setup.take);
+    const auto channel = *record.channelIndex(Quantity::displacement);
+    OutputErrorOptions options;
+    options.gradient = false;
+    options.spectra = true;
+    for (std::size_t n = 0; n < record.sections.size(); ++n) {
+        const auto fit = outputError(setup.model, record, {n}, {}, options).front();
+        record.sections[n].measured[channel].front() = 4.0 * fit.predicted[channel].front();
+    }
+    CHECK_FALSE(compare(setup.model, record).restShift);
 }
 
 TEST_CASE("A sensor that holds back what is constant tells of no shift", "[compare]")

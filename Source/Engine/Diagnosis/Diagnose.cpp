@@ -19,7 +19,7 @@ const std::string unrepeated = "Something is left that no effect of the catalogu
 
 std::string inWords(const RestShift& shift)
 {
-    return unrepeated + "The rest position of the cone moves by " + nominal(shift.moved, "m") + " between "
+    return "The rest position of the cone moves by " + nominal(shift.moved, "m") + " between "
            + plainText(shift.after, 2) + " s and " + plainText(shift.before, 2)
            + " s: the suspension snaps over, or the sensor was knocked.";
 }
@@ -144,9 +144,11 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
         diagnosis.measureNext = whatParts(diagnosis.ranking.front().model,
                                           diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
-    if (diagnosis.verdict == Verdict::complete && before.restShift) {
+    if (before.restShift && diagnosis.verdict == Verdict::complete) {
         diagnosis.verdict = Verdict::unknownEffect;
-        diagnosis.sentence = inWords(*before.restShift);
+        diagnosis.sentence = unrepeated + inWords(*before.restShift);
+    } else if (before.restShift && diagnosis.verdict == Verdict::unknownEffect) {
+        diagnosis.sentence += " " + inWords(*before.restShift);
     }
     if (diagnosis.verdict == Verdict::complete && isOpen(before))
         diagnosis.sentence +=
