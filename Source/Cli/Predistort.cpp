@@ -244,13 +244,14 @@ void addPredistort(CLI::App& app, Terminal& terminal)
                      "share, 0 to 0.3")
         ->check(CLI::Range(0.0, 0.3))
         ->capture_default_str();
-    verb->add_option(
-            "--coupling", o->coupling.corner,
-            "Hz, the corner of the high-pass between the output and the loudspeaker: the coupling capacitors of "
-            "sound card and amplifier. The limit of the motion holds behind it. 0: a constant voltage passes")
-        ->capture_default_str();
+    auto* const coupling = verb->add_option(
+        "--coupling", o->coupling.corner,
+        "Hz, the corner of the high-pass between the output and the loudspeaker: the coupling capacitors of "
+        "sound card and amplifier. The limit of the motion holds behind it. 0: a constant voltage passes");
+    coupling->capture_default_str();
     verb->add_option("--coupling-order", o->coupling.order, "1 or 2, the order of that high-pass")
         ->check(CLI::IsMember({1, 2}))
+        ->needs(coupling)
         ->capture_default_str();
     addTargetOptions(*verb, o->target);
     verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")

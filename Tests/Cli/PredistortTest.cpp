@@ -175,6 +175,8 @@ TEST_CASE("predistort limits the motion behind an amplifier that passes no const
     };
     CHECK(bentBy({}) != bentBy({"--coupling", "5", "--coupling-order", "2"}));
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--coupling", "50"}, scratch, "--coupling");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--coupling-order", "2"}, scratch,
+                "--coupling");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--coupling-order", "3"}, scratch,
                 "--coupling-order");
 }

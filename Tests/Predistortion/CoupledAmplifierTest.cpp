@@ -9,6 +9,7 @@
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/CouplingFilter.h"
+#include "Engine/Predistortion/DriverMotion.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/RealTime.h"
 
@@ -183,6 +184,40 @@ TEST_CASE("The limit holds as soon as the correction is switched on, however the
         INFO("order " << amplifier.order << ", corner " << amplifier.corner << " Hz");
         CHECK(peak({from, x.end()}) < 1.01 * limit);
     }
+}
+
+TEST_CASE("A sound within the limit is watched until a slow amplifier has forgotten what charged it",
+          "[protection]")
+{
+    const auto model = lopsided(0.2, true);
+    const double limit = 0.6 * measuredDisplacement(model), rate = 48000.0, tone = 20.0;
+    const AmplifierCoupling amplifier {AmplifierCoupling::lowest, 1};
+    PredistortionControls controls;
+    controls.displacementLimit = limit;
+    Predistorter engine(model, {rate, 2, amplifier}, controls);
+    engine.turn(false);
+    std::vector<double> u(static_cast<std::size_t>(12.0 * rate));
+    const std::size_t switched = 3 * u.size() / 4;
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = n < switched ? -1.0 * voltsTo(model, limit, 1.0)
+                            : 0.65 * voltsTo(model, limit, tone)
+                                  * std::sin(2.0 * std::numbers::pi * tone * static_cast<double>(n) / rate);
+    engine.process(u.data(), u.data(), switched);
+    engine.turn(true);
+    engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
+    const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
+    const auto& x = take.find(Quantity::displacement)->samples;
+    const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
+    CHECK(peak({from, x.end()}) < 1.01 * limit);
+}
+
+TEST_CASE("A driver without a coil is protected behind an amplifier, too", "[protection]")
+{
+    auto model = withEffect(makeModel("mechanical"), effectNamed("stiffness"),
+                            lopsided(0.2, true).components[1].operatingRange);
+    const auto motion = linearMotion(model, 8000.0, capacitor);
+    CHECK(motion.leastCorrection.size() == motion.mostCorrection.size());
+    CHECK(motion.leastCorrection.size() > 1);
 }
 
 TEST_CASE("Behind an amplifier that is stated less distortion is left than behind one that is not", "[protection]")

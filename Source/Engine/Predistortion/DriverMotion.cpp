@@ -51,14 +51,14 @@ std::vector<double> holdingHeat(const Model& model, double sampleRate, double gr
 void addMeanCorrection(LinearMotion& motion, const Model& model)
 {
     constexpr int perPeriod = 64, settling = 2;
-    motion.leastCorrection.resize(motion.holding.size(), 0.0);
-    motion.mostCorrection.resize(motion.holding.size(), 0.0);
+    motion.leastCorrection.resize(points, 0.0);
+    motion.mostCorrection.resize(points, 0.0);
     for (const double octaves : {-1.0, 0.0, 1.0}) {
         const double frequency = motion.resonance * std::exp2(octaves),
                      perVolt = std::abs(respond(model, {Quantity::displacement}, {frequency}).front().value.front());
         Reference reference(model, perPeriod * frequency);
         Inverse inverse(model, perPeriod * frequency);
-        for (std::size_t k = 1; k < motion.holding.size(); ++k) {
+        for (std::size_t k = 1; k < points; ++k) {
             const double volts = static_cast<double>(k) * motion.holdingStep / perVolt;
             reference.reset();
             inverse.reset();
