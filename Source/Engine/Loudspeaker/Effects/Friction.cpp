@@ -16,10 +16,11 @@ namespace {
 /// Hysteresis that depends on how far the cone went and hardly on how fast: Dahl's model (1968), one element per reach
 /// r_k,
 ///     F = -(F_c/n) sum_k g_k,   dg_k/dt = (v - |v| g_k) / r_k,   k = 1 .. n,
-/// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
-/// slips when the cone has gone a few r_k. How it begins to slip differs from one weave to the next, so the rate is
+/// g the share of its limit at speed that an element carries. After a turn an element follows like a spring of F_c/(n
+/// r_k) and slips when the cone has gone a few r_k. How it begins to slip differs from one weave to the next, so the
+/// rate is
 ///     dg_k/dt = (v - |v| sign(v) (1 - (1 - h(g_k sign(v)/G))^(1 + e))) / r_k,
-///     h(s) = (s, but (1 - 2 t) s where s < 0) (1 - q + q s^2),   G = 1 + b exp(-(v/v_s)^2),   v_s = V 2^w/10,
+///     h(s) = s (1 - q + q s^2), times 1 - 2 t where s < 0,   G = 1 + b exp(-(v/v_s)^2),   v_s = V 2^w/10,
 /// with a knee q, 0 <= q <= 1, which holds longer and lets go at once; a share t, 0 <= t <= 1/2, that springs back
 /// along a line after a turn, as in Bouc's and Wen's model (1976), of which more than 1/2 would make energy of nothing;
 /// Dahl's exponent 1 + e, which is above 1 for what yields early and holds on late; and a limit that is higher by b for
@@ -59,7 +60,7 @@ public:
                 {.name = "spread", .unit = "octaves", .value = 2.0, .even = true, .prior = anySpread},
                 {.name = "knee", .unit = "1", .lower = 0.0, .upper = 1.0, .prior = 0.5},
                 {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25},
-                {.name = "bend", .unit = "1", .lower = -0.6, .upper = 2.0, .prior = 0.5},
+                {.name = "bend", .unit = "1", .lower = -0.6, .upper = 1.0, .prior = 0.5},
                 {.name = "stick", .unit = "1", .lower = -0.5, .upper = 2.0, .prior = 0.3},
                 {.name = "pace", .unit = "octaves", .lower = -5.0, .upper = 3.3, .prior = 1.5}};
     }
@@ -130,17 +131,38 @@ private:
     }
 
     using Powers = Eigen::Array<double, elements, 1>;
-    // What is left of the limit, from which on its powers are on a line: they have no slope there, or no end of it.
+    // What is left of the limit, below which its powers are on a parabola to zero with the same value and slope, and
+    // beyond zero on its tangent: a power has no slope there, or no end of it.
     static constexpr double nearLimit = 0.02;
 
-    /// left^exponent, of all elements at once, as powers are dear.
+    /// left^exponent with its slopes by both, of all elements at once, as powers are dear.
+    struct Raised {
+        Powers value, byLeft, byExponent;
+
+        Raised(const Powers& left, double exponent)
+        {
+            const Powers above = left.max(nearLimit), logs = above.log();
+            value = (exponent * logs).exp();
+            byLeft = exponent * value / above;
+            byExponent = value * logs;
+            for (Eigen::Index k = 0; k < elements; ++k) {
+                if (!(left[k] < nearLimit))
+                    continue;
+                const double s = left[k] / nearLimit, end = value[k], bent = s > 0.0 ? s * s : 0.0,
+                             bentSlope = s > 0.0 ? 2.0 * s : 0.0;
+                value[k] = end * ((2.0 - exponent) * s + (exponent - 1.0) * bent);
+                byLeft[k] = end * (2.0 - exponent + (exponent - 1.0) * bentSlope) / nearLimit;
+                byExponent[k] = value[k] * logs[k] + end * (bent - s);
+            }
+        }
+    };
+
     static void raise(std::array<double, elements>& left, double exponent)
     {
         if (exponent == 1.0)
             return;
         Eigen::Map<Powers> values(left.data());
-        const Powers above = values.max(nearLimit);
-        values = values.min(nearLimit) / nearLimit * (exponent * above.log()).exp();
+        values = Raised(values, exponent).value;
     }
     template <int slopes>
     static void raise(std::array<ceres::Jet<double, slopes>, elements>& left,
@@ -148,18 +170,14 @@ private:
     {
         if (exponent.a == 1.0 && exponent.v.isZero(0.0))
             return;
-        Powers above;
+        Powers values;
         for (std::size_t k = 0; k < elements; ++k)
-            above[static_cast<Eigen::Index>(k)] = std::max(left[k].a, nearLimit);
-        const Powers logs = above.log(), powers = (exponent.a * logs).exp();
+            values[static_cast<Eigen::Index>(k)] = left[k].a;
+        const Raised raised(values, exponent.a);
         for (std::size_t k = 0; k < elements; ++k) {
             const auto at = static_cast<Eigen::Index>(k);
-            auto& one = left[k];
-            const bool onLine = one.a < nearLimit;
-            const double below = onLine ? one.a / nearLimit : 1.0,
-                         slope = onLine ? powers[at] / nearLimit : exponent.a * powers[at] / above[at];
-            one.v = slope * one.v + below * powers[at] * logs[at] * exponent.v;
-            one.a = below * powers[at];
+            left[k].a = raised.value[at];
+            left[k].v = raised.byLeft[at] * left[k].v + raised.byExponent[at] * exponent.v;
         }
     }
 
