@@ -81,19 +81,36 @@ constexpr AmplifierCoupling capacitor {2.0, 1}, filter {5.0, 2};
 
 /// How far the driver goes behind the amplifier, in units of the limit.
 double reached(const Model& model, const Programme& programme, double limit, double rate,
-               const AmplifierCoupling& stated, const AmplifierCoupling& amplifier)
+               const AmplifierCoupling& amplifier)
 {
     PredistortionControls controls;
     controls.displacementLimit = limit;
-    Predistorter engine(model, {rate, 2, stated}, controls);
+    Predistorter engine(model, {rate, 2, amplifier}, controls);
     const auto out = through(engine, programme.samples);
     const auto meters = engine.collectMeters();
     CHECK(meters.faults == 0);
     const double x = peak(
         simulate(model, amplified(amplifier, out, rate), rate, {}).find(Quantity::displacement)->samples);
-    if (stated.corner == amplifier.corner)
-        CHECK(meters.displacement == Approx(x).epsilon(0.01));
+    CHECK(meters.displacement == Approx(x).epsilon(0.01));
     return x / limit;
+}
+
+/// How far it goes, in units of the limit, from a fifth of a second after the correction has been switched on: a cone
+/// that was beyond the limit needs that to come back.
+double reachedAfter(std::size_t switched, std::vector<double> u, const Model& model, double limit, double rate,
+                    const AmplifierCoupling& amplifier)
+{
+    PredistortionControls controls;
+    controls.displacementLimit = limit;
+    Predistorter engine(model, {rate, 2, amplifier}, controls);
+    engine.turn(false);
+    engine.process(u.data(), u.data(), switched);
+    engine.turn(true);
+    engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
+    const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
+    const auto& x = take.find(Quantity::displacement)->samples;
+    const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
+    return peak({from, x.end()}) / limit;
 }
 
 }  // namespace
@@ -129,7 +146,7 @@ TEST_CASE("The excursion's limit holds behind an amplifier that passes no consta
                 for (const auto& amplifier : {capacitor, filter})
                     for (int which = 0; which < programmes; ++which) {
                         const auto played = programme(which, model, limit, rate, 1.5);
-                        const double most = reached(model, played, limit, rate, amplifier, amplifier);
+                        const double most = reached(model, played, limit, rate, amplifier);
                         INFO("asymmetry " << share << (motorToo ? " of both" : ", the motor's against it") << ", "
                                           << played.name << " at " << rate << " Hz, order " << amplifier.order);
                         CHECK(most < 1.01);
@@ -156,7 +173,7 @@ TEST_CASE("An amplifier that charges drives the cone on when the sound stops, wh
                                         * (std::fmod(frequency * static_cast<double>(n) / rate, 1.0) < 0.5 ? -1.0
                                                                                                            : 1.0);
                 INFO(frequency << " Hz, order " << amplifier.order << ", corner " << amplifier.corner << " Hz");
-                CHECK(reached(model, square, limit, rate, amplifier, amplifier) < 1.01);
+                CHECK(reached(model, square, limit, rate, amplifier) < 1.01);
             }
 }
 
@@ -165,50 +182,27 @@ TEST_CASE("The limit holds as soon as the correction is switched on, however the
     const auto model = lopsided(0.2, true);
     const double limit = 0.6 * measuredDisplacement(model), rate = 8000.0;
     for (const auto& amplifier : {capacitor, filter, AmplifierCoupling {0.5, 1}}) {
-        PredistortionControls controls;
-        controls.displacementLimit = limit;
-        Predistorter engine(model, {rate, 2, amplifier}, controls);
-        engine.turn(false);
         // What is played before charges the amplifier one way, what follows comes on top of that.
         std::vector<double> u(static_cast<std::size_t>(3.0 * rate));
         const std::size_t switched = u.size() / 2;
         for (std::size_t n = 0; n < u.size(); ++n)
             u[n] = (n < switched ? -2.0 : 2.0) * voltsTo(model, limit, 1.0);
-        engine.process(u.data(), u.data(), switched);
-        engine.turn(true);
-        engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
-        const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
-        const auto& x = take.find(Quantity::displacement)->samples;
-        // A fifth of a second for a cone that was beyond the limit to come back.
-        const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
         INFO("order " << amplifier.order << ", corner " << amplifier.corner << " Hz");
-        CHECK(peak({from, x.end()}) < 1.01 * limit);
+        CHECK(reachedAfter(switched, u, model, limit, rate, amplifier) < 1.01);
     }
 }
 
-TEST_CASE("A sound within the limit is watched until a slow amplifier has forgotten what charged it",
-          "[protection]")
+TEST_CASE("A sound within the limit is watched until a slow amplifier has forgotten what charged it", "[protection]")
 {
     const auto model = lopsided(0.2, true);
     const double limit = 0.6 * measuredDisplacement(model), rate = 48000.0, tone = 20.0;
-    const AmplifierCoupling amplifier {AmplifierCoupling::lowest, 1};
-    PredistortionControls controls;
-    controls.displacementLimit = limit;
-    Predistorter engine(model, {rate, 2, amplifier}, controls);
-    engine.turn(false);
     std::vector<double> u(static_cast<std::size_t>(12.0 * rate));
     const std::size_t switched = 3 * u.size() / 4;
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = n < switched ? -1.0 * voltsTo(model, limit, 1.0)
                             : 0.65 * voltsTo(model, limit, tone)
                                   * std::sin(2.0 * std::numbers::pi * tone * static_cast<double>(n) / rate);
-    engine.process(u.data(), u.data(), switched);
-    engine.turn(true);
-    engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
-    const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
-    const auto& x = take.find(Quantity::displacement)->samples;
-    const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
-    CHECK(peak({from, x.end()}) < 1.01 * limit);
+    CHECK(reachedAfter(switched, u, model, limit, rate, {AmplifierCoupling::lowest, 1}) < 1.01);
 }
 
 TEST_CASE("A driver without a coil is protected behind an amplifier, too", "[protection]")
