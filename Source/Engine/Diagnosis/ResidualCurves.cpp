@@ -246,6 +246,16 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     return curves;
 }
 
+std::vector<std::size_t> sectionsInTime(const Record& record)
+{
+    std::vector<std::size_t> order(record.sections.size());
+    std::iota(order.begin(), order.end(), std::size_t {0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return record.sections[a].middle < record.sections[b].middle;
+    });
+    return order;
+}
+
 std::vector<ResidualCurve> curvesOverTime(const Model& model, const Record& record, const std::vector<SectionFit>& fits)
 {
     constexpr std::size_t fewest = 3;
@@ -255,12 +265,7 @@ std::vector<ResidualCurve> curvesOverTime(const Model& model, const Record& reco
         return {};
     ResidualCurve stiffness {"stiffness", "N/m", "t", "s", {}, {}, {}, 0.0},
         resistance {"resistance", "ohm", "t", "s", {}, {}, {}, 0.0};
-    std::vector<std::size_t> order(record.sections.size());
-    std::iota(order.begin(), order.end(), std::size_t {0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return record.sections[a].middle < record.sections[b].middle;
-    });
-    for (const auto n : order) {
+    for (const auto n : sectionsInTime(record)) {
         const auto& section = record.sections[n];
         const auto lack = lacking.in(section, fits[n]);
         add(stiffness, section.middle, multipleOf(displacementOf(record, section, section.measured), lack.force));

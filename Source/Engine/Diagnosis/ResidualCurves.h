@@ -30,6 +30,9 @@ struct ResidualCurve {
 std::vector<ResidualCurve> residualCurves(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                           const std::vector<SectionFit>& fits);
 
+/// The places of the sections, in their order in the take.
+std::vector<std::size_t> sectionsInTime(const Record&);
+
 /// The residual stiffness and resistance of each section against its time in the take: a coil that warms and a
 /// suspension that wanders show there. None where residualCurves() has none, or for fewer than three sections.
 /// @param fits  of all sections of the record, with spectra

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/RestShift.h"
 
+#include "Engine/Diagnosis/ResidualCurves.h"
+
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace excursion {
 namespace {
@@ -18,13 +19,8 @@ struct Means {
 
 std::vector<Means> meansOf(const Record& record, const std::vector<SectionFit>& fits, std::size_t channel)
 {
-    std::vector<std::size_t> order(record.sections.size());
-    std::iota(order.begin(), order.end(), std::size_t {0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return record.sections[a].middle < record.sections[b].middle;
-    });
     std::vector<Means> means;
-    for (const auto n : order) {
+    for (const auto n : sectionsInTime(record)) {
         const auto& section = record.sections[n];
         const auto N = static_cast<double>(section.window);
         const auto& lines = section.measured[channel];

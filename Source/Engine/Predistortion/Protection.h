@@ -37,8 +37,9 @@ namespace excursion {
 /// A plan makes the final decision. It starts from the state of a cone driven by the actual output, and assumes the
 /// known inputs, these factors now, and silence from the next tick on. If that cone would exceed its limit, the factors
 /// are lowered until it does not. Silence was found to be safe one tick before, so it is always a safe continuation,
-/// and the limit holds. Behind an amplifier that withholds the mean of the correction, what it will withhold is foreseen
-/// (ConeShift): there the limit holds as far as that does. The signal is only ever turned down, so no voltage is spent on braking.
+/// and the limit holds. Behind an amplifier that withholds the mean of the correction, what it will withhold is
+/// foreseen (ConeShift): there the limit holds as far as that does. The signal is only ever turned down, so no voltage
+/// is spent on braking.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Protection {
