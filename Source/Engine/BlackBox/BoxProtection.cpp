@@ -31,7 +31,7 @@ BoxProtection::BoxProtection(const BlackBox& box, const Region& region, const Re
                              const AmplifierCoupling& coupling)
     : limiter_(box, region, sampleRate),
       motion_(box),
-      protection_(behind(motion_.linear, coupling), {sampleRate, 1}, coneDelay),
+      protection_(behind(motion_.linear, coupling), {sampleRate, 1, coupling}, coneDelay),
       cone_(behind(motion_.linear, coupling), sampleRate),
       recovery_(static_cast<int>(silenceTime * sampleRate), static_cast<int>(riseTime * sampleRate)),
       apart_(static_cast<int>(apartTime * box.linear.sampleRate)),
