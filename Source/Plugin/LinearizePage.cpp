@@ -18,6 +18,7 @@ LinearizePage::LinearizePage(Window& window)
     : Page(window),
       processor_(window.processor()),
       mode_(processor_.parameters().mode(), &window.history()),
+      couplingOrder_(processor_.parameters().couplingOrder(), &window.history()),
       target_(window),
       meters_(window)
 {
@@ -87,6 +88,12 @@ LinearizePage::LinearizePage(Window& window)
         dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
         dials_.back().first->setFont(juce::Font(14.0f));
         add({dials_.back().first.get(), &dials_.back().second->slider()});
+        if (number->paramID == "coupling") {
+            dials_.back().second->slider().setTooltip(
+                "Where the high-pass of sound card and amplifier begins: with it the correction reckons, and so does "
+                "the limit of the excursion");
+            add({&couplingOrder_.box()});
+        }
     }
     for (auto* effect : processor_.parameters().effects()) {
         switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
@@ -109,6 +116,7 @@ void LinearizePage::showModel(const AnyModel& model)
                            : id == "margin"          ? moves
                            : id == "powerLimit"      ? coil
                            : id == "coilResistance"  ? box_ && coil
+                           : id == "coupling"        ? !box_ || box_->played.rehearsal
                                                      : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
@@ -253,9 +261,10 @@ void LinearizePage::showForecast()
         asked_ = std::move(question);
         const auto loaded = processor_.model();
         forecast_.ask([model = withoutOff(loaded, recipe), controls = controlsOf(recipe, loaded),
-                       volts = recipe.fullScale](const Progress& progress) {
+                       volts = recipe.fullScale,
+                       realTime = RealTimeOptions {.coupling = couplingOf(recipe)}](const Progress& progress) {
             try {
-                return std::optional(predictDistortion(model, controls, volts, {}, progress));
+                return std::optional(predictDistortion(model, controls, volts, realTime, progress));
             } catch (const Error& error) {
                 if (error.kind() == Error::Kind::cancelled)
                     throw;
@@ -291,10 +300,19 @@ void LinearizePage::useAdapted()
     window_.tell(words(adapted->words), false);
 }
 
+/// Whether there is a high-pass, which has an order.
+bool LinearizePage::statesAmplifier() const
+{
+    return !couplingOf(processor_.parameters().settings()).passesConstant() && (!box_ || box_->played.rehearsal);
+}
+
 /// What a host has moved.
 void LinearizePage::follow()
 {
     mode_.follow();
+    couplingOrder_.follow();
+    if (couplingOrder_.box().isVisible() != statesAmplifier())
+        resized();
     for (auto& dial : dials_)
         dial.second->follow();
     for (auto& one : switches_)
@@ -353,6 +371,7 @@ void LinearizePage::resized()
         k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
     const int told = facts_.isVisible() ? 116 : 0, rest = 28 + 4 * 8 + meters_.wantedHeight() + told,
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
+    couplingOrder_.box().setVisible(statesAmplifier());
     auto modes = left.removeFromTop(28);
     if (!box_) {
         for (auto* button : {&adapt_, &save_}) {
@@ -362,11 +381,15 @@ void LinearizePage::resized()
     }
     mode_.box().setBounds(modes);
     left.removeFromTop(8);
-    for (auto& dial : dials_) {
+    const auto numbers = processor_.parameters().numbers();
+    for (std::size_t k = 0; k < dials_.size(); ++k) {
+        auto& dial = dials_[k];
         if (!dial.first->isVisible())
             continue;
         auto line = left.removeFromTop(row);
         dial.first->setBounds(line.removeFromLeft(130));
+        if (numbers[k]->paramID == "coupling" && couplingOrder_.box().isVisible())
+            couplingOrder_.box().setBounds(line.removeFromRight(100).reduced(0, 1));
         dial.second->slider().setBounds(line);
     }
     left.removeFromTop(8);

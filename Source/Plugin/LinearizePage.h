@@ -43,6 +43,7 @@ private:
     void follow();
     void showForecast();
     void useAdapted();
+    bool statesAmplifier() const;
     bool targetPictured() const { return target_.pictured(); }
 
     Processor& processor_;
@@ -70,7 +71,7 @@ private:
     int shownDriver_ = 0;  ///< in the list; 0: none
     juce::String shownRecipe_;
     juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"}, save_ {"Save..."};
-    ChoiceBox mode_;
+    ChoiceBox mode_, couplingOrder_;
     /// each behind its title
     std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;
     std::vector<std::unique_ptr<OnOffButton>> switches_;

@@ -64,6 +64,9 @@ Parameters::Parameters(juce::AudioProcessor& processor)
                              {Settings::resistances, 100, 8.0, 1.0, "ohm", "not known"}, first.coilResistance);
     targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
     targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
+    coupling_ = number("coupling", "Amplifier high-pass", {Settings::couplings, 10, 3.0, 1.0, "Hz", "none"},
+                       first.coupling);
+    couplingOrder_ = added(new Choice("couplingOrder", "Amplifier order", {"1st order", "2nd order"}));
 }
 
 Settings Parameters::settings() const
@@ -78,6 +81,8 @@ Settings Parameters::settings() const
     settings.margin = margin_->get();
     settings.coilResistance = coilResistance_->get();
     settings.trimDb = trim_->get();
+    settings.coupling = coupling_->get();
+    settings.couplingOrder = 1 + couplingOrder_->getIndex();
     settings.target = {static_cast<Target::Kind>(target_->getIndex()), targetF0_->get(), targetQ_->get(),
                        targetVolume_->get()};
     settings.target.low = targetLow_->get();
@@ -132,6 +137,7 @@ Between Parameters::between() const
     };
     look(*mode_);
     look(*target_);
+    look(*couplingOrder_);
     for (const auto* effect : effects_)
         look(*effect);
     return found;
@@ -185,6 +191,8 @@ void Parameters::store(const Recipe& recipe, const Between& between)
     margin_->store(recipe.margin);
     coilResistance_->store(recipe.coilResistance);
     trim_->store(recipe.trimDb);
+    coupling_->store(recipe.coupling);
+    put(*couplingOrder_, couplingOrder_->proportionOf(recipe.couplingOrder - 1));
     put(*target_, target_->proportionOf(static_cast<int>(recipe.target.kind)));
     targetF0_->store(recipe.target.frequency);
     targetQ_->store(recipe.target.quality);
@@ -209,6 +217,7 @@ void Parameters::visit(const Visit& each) const
     each(*target_);
     for (auto* number : targetNumbers())
         each(*number);
+    each(*couplingOrder_);
     for (auto* effect : effects_)
         each(*effect);
 }

@@ -20,7 +20,8 @@ ChainControls chainControls(const Settings&, double measuredDisplacement);
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
 ///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V),
 ///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects, target, targetF0 (Hz),
-///     targetQ, targetVolume (l), effect-<id> of still later ones, coilResistance (ohm), targetLow, targetHigh (Hz)
+///     targetQ, targetVolume (l), effect-<id> of still later ones, coilResistance (ohm), targetLow, targetHigh (Hz),
+///     coupling (Hz), couplingOrder of the amplifier
 /// and, which no host sees, the curve of a target.
 /// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
 class Parameters {
@@ -51,8 +52,10 @@ public:
     Choice& mode() { return *mode_; }
     std::vector<Number*> numbers() const
     {
-        return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, coilResistance_, margin_, trim_};
+        return {fullScale_,      amount_, displacementLimit_, voltageLimit_, powerLimit_,
+                coilResistance_, margin_, coupling_,          trim_};
     }
+    Choice& couplingOrder() { return *couplingOrder_; }
     Choice& target() { return *target_; }
     std::vector<Number*> targetNumbers() const { return {targetF0_, targetQ_, targetVolume_, targetLow_, targetHigh_}; }
     const std::vector<OnOff*>& effects() const { return effects_; }
@@ -64,8 +67,9 @@ private:
     void visit(const Visit&) const;
     void storeCurve(const ThirdOctaves&);
 
-    Choice *mode_, *target_;
-    Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_, *coilResistance_;
+    Choice *mode_, *target_, *couplingOrder_;
+    Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_, *coilResistance_,
+        *coupling_;
     Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};

@@ -62,31 +62,33 @@ Processor::~Processor()
 /// that.
 RealTimeOptions Processor::options() const
 {
-    const RealTimeOptions asked {sampleRate_, oversampling};
-    return asked.isValid(nullptr) ? asked : RealTimeOptions {48000.0, oversampling};
+    const auto coupling = couplingOf(parameters_.settings());
+    const RealTimeOptions asked {sampleRate_, oversampling, coupling};
+    return asked.isValid(nullptr) ? asked : RealTimeOptions {48000.0, oversampling, coupling};
 }
 
 /// With the mutex held: one chain a channel, with the switches as they are.
 Processor::Chains Processor::chains(const AnyModel& model, std::size_t channels)
 {
-    switches_ = parameters_.switches();
+    built_ = toBuild();
+    const auto realTime = options();
     Chains result;
     if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
-        const double rate = options().sampleRate;
         const double measured = measuredDisplacement((*box)->played);
         const auto controls = parameters_.controls(measured);
         for (std::size_t k = 0; k < channels; ++k)
             result.push_back(std::make_unique<ModelChain>(
-                measured, std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.predistortion), rate,
-                controls));
+                measured,
+                std::make_unique<BlackBoxEngine>((*box)->played, realTime.sampleRate, controls.predistortion,
+                                                 realTime.coupling),
+                realTime.sampleRate, controls));
     } else {
         const auto& loaded = std::get<Model>(model);
-        const auto running = asSwitched(loaded, parameters_.recipe(), options());
+        const auto running = asSwitched(loaded, parameters_.recipe(), realTime);
         // An effect that is switched off takes no limit with it.
         const double measured = measuredDisplacement(loaded);
         for (std::size_t k = 0; k < channels; ++k)
-            result.push_back(
-                std::make_unique<ModelChain>(measured, running, options(), parameters_.controls(measured)));
+            result.push_back(std::make_unique<ModelChain>(measured, running, realTime, parameters_.controls(measured)));
     }
     return result;
 }
@@ -123,16 +125,23 @@ void Processor::playAlone(Chains fresh)
     channels_ = std::move(channels);
 }
 
-/// With the mutex held: new chains where effects have been switched.
+std::pair<std::uint64_t, AmplifierCoupling> Processor::toBuild() const
+{
+    return {parameters_.switches(), couplingOf(parameters_.settings())};
+}
+
+/// With the mutex held: new chains where effects have been switched, or the amplifier is another.
 void Processor::followSwitches()
 {
-    if (channels_.empty() || parameters_.areBeingSet() || parameters_.switches() == switches_)
+    if (channels_.empty() || parameters_.areBeingSet())
+        return;
+    auto wanted = toBuild();
+    if (box_)
+        wanted.first = built_.first;  // it has no effects
+    if (wanted == built_)
         return;
     try {
-        if (box_)
-            switches_ = parameters_.switches();  // it has no effects
-        else
-            build(model_);
+        build(box_ ? AnyModel(box_) : AnyModel(model_));
     } catch (const std::exception&) {
         // Without some effect the model cannot be run: what plays goes on.
     }

@@ -17,16 +17,17 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace excursion::plugin {
 
 /// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or
-/// the switches of the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the
-/// hand-over, nothing else. A driver and a model without physics are loaded, played and handed over in the same way;
-/// their latencies differ, and the host is told on the message thread, as JUCE keeps the latency in a plain int and
-/// calls the host from whoever sets it. At a rate at which no chain can run the signal goes through as it is,
-/// as late as ever.
+/// the switches of the effects or the amplifier change, and frees the old ones. The audio thread sees parameters
+/// (atomics) and the hand-over, nothing else. A driver and a model without physics are loaded, played and handed over
+/// in the same way; their latencies differ, and the host is told on the message thread, as JUCE keeps the latency in a
+/// plain int and calls the host from whoever sets it. At a rate at which no chain can run the signal goes through as it
+/// is, as late as ever.
 class Processor : public juce::AudioProcessor, private juce::AsyncUpdater {
 public:
     static constexpr int oversampling = 2;
@@ -114,6 +115,7 @@ private:
     int build(const AnyModel&);
     Chains chains(const AnyModel&, std::size_t channels);
     void playAlone(Chains);
+    std::pair<std::uint64_t, AmplifierCoupling> toBuild() const;
     void followSwitches();
     int start();
     void tellLatency();
@@ -131,7 +133,8 @@ private:
     std::atomic<std::uint64_t> modelVersion_ {1};
     double sampleRate_ = 0.0;       ///< 0: not prepared
     std::atomic<int> latency_ {0};  ///< samples; what the host has been told, or is about to be
-    std::uint64_t switches_ = 0;    ///< of the effects, as they were when chains were built
+    /// what chains were built with: the switches of the effects, and the amplifier
+    std::pair<std::uint64_t, AmplifierCoupling> built_ {};
     std::string standstill_;
     /// A state that could not be used, as it was given, and that of the plugin at that time.
     struct Refused {

@@ -204,6 +204,42 @@ TEST_CASE("A recipe reaches the parameters and comes back as it was", "[plugin]"
     }
 }
 
+TEST_CASE("An amplifier that is stated while audio runs takes off what its high-pass does, without a step", "[plugin]")
+{
+    Processor processor;
+    setMode(processor, Mode::speaker);
+    processor.prepareToPlay(48000.0, 480);
+    std::vector<float> u(3 * 48000);
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = static_cast<float>(0.02 * std::sin(2.0 * std::numbers::pi * 20.0 * static_cast<double>(n) / 48000.0));
+    const auto meanwhile = [&](std::size_t n) {
+        if (n == 48000)
+            processor.parameters().numbers()[7]->set(20.0);
+        if (n == 96000)
+            processor.parameters().couplingOrder() = 1;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread that builds has its time
+    };
+    const auto out = playedInBlocks(
+        u, [&](auto& buffer, auto& midi) { processor.processBlock(buffer, midi); }, meanwhile);
+    const auto level = [&](std::size_t from) {
+        double power = 0.0;
+        for (std::size_t n = from; n < from + 7200; ++n)
+            power += static_cast<double>(out[n]) * static_cast<double>(out[n]);
+        return 10.0 * std::log10(power);
+    };
+    REQUIRE(processor.parameters().settings().coupling == 20.0);
+    // At its corner either order takes off 3 dB, the second another 90 degrees.
+    CHECK(level(88000) - level(40000) == Approx(-3.01).margin(0.2));
+    CHECK(level(136000) - level(40000) == Approx(-3.01).margin(0.2));
+    double steepest = 0.0;
+    for (std::size_t n = 1; n < out.size(); ++n)
+        steepest = std::max(steepest, std::abs(static_cast<double>(out[n] - out[n - 1])));
+    double own = 0.0;
+    for (std::size_t n = 24000; n < 48000; ++n)
+        own = std::max(own, std::abs(static_cast<double>(out[n] - out[n - 1])));
+    CHECK(steepest < 1.5 * own);
+}
+
 TEST_CASE("An effect is switched off while audio runs, and a model replaced, without a step", "[plugin]")
 {
     Processor processor;

@@ -38,6 +38,8 @@ Recipe drawn(std::mt19937& random)
     recipe.margin = within(Settings::margins);
     recipe.coilResistance = within(Settings::resistances);
     recipe.trimDb = within(Settings::trims);
+    recipe.coupling = within(Settings::couplings);
+    recipe.couplingOrder = 1 + static_cast<int>(random() % 2);
     recipe.target = {static_cast<Target::Kind>(random() % 6), within(Settings::targetFrequencies),
                      within(Settings::targetQualities), within(Settings::targetVolumes)};
     recipe.target.low = within(Settings::targetEnds);
@@ -51,16 +53,24 @@ Recipe drawn(std::mt19937& random)
 }  // namespace
 
 TEST_CASE(
-    "A recipe of version 1 is read with no limit of the power and no margin, one of version 2 with no target; a later "
-    "version than ours is refused",
+    "A recipe of version 1 is read with no limit of the power and no margin, one of version 2 with no target, one of "
+    "version 4 with no amplifier; a later version than ours is refused",
     "[plugin]")
 {
     std::mt19937 random(2);
     const auto recipe = drawn(random);
     auto document = documentOf(recipe);
-    CHECK(document["version"] == 4);
+    CHECK(document["version"] == 5);
     CHECK(toJson(read(document)) == toJson(recipe));
     auto expected = recipe;
+    document["version"] = 4;
+    document.erase("coupling");
+    document.erase("couplingOrder");
+    expected.coupling = 0.0;
+    expected.couplingOrder = 1;
+    CHECK(toJson(read(document)) == toJson(expected));
+    document["version"] = 5;
+    CHECK_THROWS_WITH(read(document), Catch::Contains("coupling"));
     document["version"] = 3;
     document.erase("coilResistance");
     expected.coilResistance = 0.0;
@@ -85,9 +95,9 @@ TEST_CASE(
     CHECK(toJson(read(document)) == toJson(expected));
     document["version"] = 2;
     CHECK_THROWS_WITH(read(document), Catch::Contains("powerLimit"));
-    for (const nlohmann::json& version : {nlohmann::json(5), nlohmann::json("2"), nlohmann::json(0)}) {
+    for (const nlohmann::json& version : {nlohmann::json(6), nlohmann::json("2"), nlohmann::json(0)}) {
         document["version"] = version;
-        CHECK_THROWS_WITH(read(document), Catch::Contains("1, 2, 3 or 4"));
+        CHECK_THROWS_WITH(read(document), Catch::Contains("1 to 5"));
     }
     for (const auto& [key, value] :
          {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
@@ -229,5 +239,5 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
              "effect-friction "
              "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance target "
              "targetF0 "
-             "targetQ targetVolume coilResistance targetLow targetHigh");
+             "targetQ targetVolume coilResistance targetLow targetHigh coupling couplingOrder");
 }

@@ -404,7 +404,9 @@ TEST_CASE("A recipe is refused by field when it makes no sense", "[chain]")
     refused("voltageLimit", -1);
     refused("trimDb", 100);
     refused("off", nlohmann::json::array({"warp-drive"}));
-    refused("version", 5);
+    refused("version", 6);
+    refused("coupling", 25);
+    refused("couplingOrder", 3);
     refused("target", "low");
 }
 

@@ -8,8 +8,10 @@
 #include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Predistortion/Chain.h"
 #include "Engine/Predistortion/CouplingFilter.h"
 #include "Engine/Predistortion/DriverMotion.h"
+#include "Engine/Predistortion/PredictedDistortion.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/RealTime.h"
 
@@ -203,6 +205,81 @@ TEST_CASE("A sound within the limit is watched until a slow amplifier has forgot
                             : 0.65 * voltsTo(model, limit, tone)
                                   * std::sin(2.0 * std::numbers::pi * tone * static_cast<double>(n) / rate);
     CHECK(reachedAfter(switched, u, model, limit, rate, {AmplifierCoupling::lowest, 1}) < 1.01);
+}
+
+TEST_CASE("What plays past the correction charges the amplifier, too", "[protection]")
+{
+    const auto model = lopsided(0.2, true);
+    const double rate = 8000.0, limit = 0.6 * measuredDisplacement(model);
+    const AmplifierCoupling amplifier {0.5, 1};
+    PredistortionControls controls;
+    controls.displacementLimit = limit;
+    Predistorter engine(model, {rate, 2, amplifier}, controls);
+    std::vector<double> u(static_cast<std::size_t>(3.0 * rate));
+    const std::size_t switched = u.size() / 2;
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = (n < switched ? -2.0 : 2.0) * voltsTo(model, limit, 1.0);
+    engine.turn(false);
+    engine.pass(u.data(), switched);
+    engine.turn(true);
+    engine.process(u.data() + switched, u.data() + switched, u.size() - switched);
+    const auto take = simulate(model, amplified(amplifier, u, rate), rate, {});
+    const auto& x = take.find(Quantity::displacement)->samples;
+    const auto from = x.begin() + static_cast<std::ptrdiff_t>(switched + static_cast<std::size_t>(0.2 * rate));
+    CHECK(peak({from, x.end()}) < 1.01 * limit);
+}
+
+TEST_CASE("An amplifier stays charged through a fault, and when another engine takes over", "[protection]")
+{
+    const auto model = lopsided(0.2, true);
+    const double rate = 8000.0, volts = 1.0;
+    for (const auto& amplifier : {AmplifierCoupling {0.5, 1}, AmplifierCoupling {0.5, 2}}) {
+        Predistorter engine(model, {rate, 2, amplifier});
+        std::vector<double> u(static_cast<std::size_t>(2.0 * rate), volts);
+        engine.process(u.data(), u.data(), u.size());
+        const auto charged = engine.warmth().charge;
+        CHECK(std::abs(charged[0]) > 0.5 * volts / (2.0 * std::numbers::pi * 0.5));
+        std::vector<double> burst(80, 0.99 * Plausible(model).input());  // the correction asks for more
+        engine.process(burst.data(), burst.data(), burst.size());
+        std::vector<double> silence(80, 0.0);
+        engine.process(silence.data(), silence.data(), silence.size());
+        REQUIRE(engine.collectMeters().faults > 0);
+        CHECK(engine.warmth().charge[0] / charged[0] > 0.9);
+        Predistorter next(model, {rate, 2, amplifier});
+        next.warm({.charge = charged});
+        for (std::size_t k = 0; k < charged.size(); ++k)
+            CHECK(next.warmth().charge[k] == charged[k]);
+    }
+}
+
+TEST_CASE("A speaker that is heard through a chain stands behind the same amplifier", "[chain]")
+{
+    const auto model = lopsided(0.2, true);
+    const double rate = 48000.0;
+    const auto u = burst(rate, 0.5, 1.0);
+    const auto heard = [&](const AmplifierCoupling& amplifier, Mode mode, const std::vector<double>& signal) {
+        Chain chain(model, {rate, 2, amplifier}, {mode, 4.0, 1.0, {}});
+        return through(chain, signal);
+    };
+    for (const auto& amplifier : {AmplifierCoupling {20.0, 1}, AmplifierCoupling {20.0, 2}}) {
+        const auto expected = heard({}, Mode::speaker, amplified(amplifier, u, rate));
+        CHECK(relativeError(heard(amplifier, Mode::speaker, u), expected) < 1e-3);
+        CHECK(relativeError(heard({}, Mode::speaker, u), expected) > 0.05);
+        Chain linear(linearPart(model), {rate, 2, amplifier}, {Mode::speaker, 4.0, 1.0, {}});
+        const auto wanted = through(linear, u);
+        CHECK(relativeError(heard(amplifier, Mode::audition, u), wanted)
+              < 0.2 * relativeError(heard(amplifier, Mode::speaker, u), wanted));
+    }
+}
+
+TEST_CASE("The distortion that is predicted is that behind the amplifier", "[protection]")
+{
+    const auto model = lopsided(0.2, true);
+    const double volts = 0.5 * voltsTo(model, measuredDisplacement(model), resonanceOf(model));
+    const auto free = predictDistortion(model, {}, volts),
+               behind = predictDistortion(model, {}, volts, {48000.0, 2, capacitor});
+    CHECK(behind.beforeDb == Approx(free.beforeDb).margin(2.0));
+    CHECK(behind.afterDb < behind.beforeDb - 12.0);
 }
 
 TEST_CASE("A driver without a coil is protected behind an amplifier, too", "[protection]")

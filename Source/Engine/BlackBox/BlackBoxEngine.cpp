@@ -6,14 +6,17 @@
 
 namespace excursion {
 
-BlackBoxEngine::BlackBoxEngine(const PlayedBox& played, double sampleRate, const PredistortionControls& controls)
-    : speaker_(played.box, played.region, played.rest, sampleRate),
+BlackBoxEngine::BlackBoxEngine(const PlayedBox& played, double sampleRate, const PredistortionControls& controls,
+                               const AmplifierCoupling& coupling)
+    : amplifier_(coupling, sampleRate),
+      speaker_(played.box, played.region, played.rest, sampleRate),
       perOutput_(played.perOutput),
       moves_(tellsExcursion(played.box)),
       waiting_(static_cast<std::size_t>(speaker_.latency()))
 {
     if (played.rehearsal)
-        bend_.emplace(RehearsedBox(played.box, played.region, played.rest, *played.rehearsal), sampleRate);
+        bend_.emplace(RehearsedBox(played.box, played.region, played.rest, *played.rehearsal), sampleRate,
+                      PredistortionControls {}, coupling);
     set(controls);
     reset();
 }
@@ -22,7 +25,7 @@ void BlackBoxEngine::reset()
 {
     if (bend_)
         bend_->reset();
-    speaker_.reset();
+    resetPlaying();
     std::fill(waiting_.begin(), waiting_.end(), 0.0);
     at_ = 0;
 }
@@ -33,6 +36,12 @@ void BlackBoxEngine::resetBending()
     if (bend_)
         bend_->reset();
     std::fill(waiting_.begin(), waiting_.end(), 0.0);
+}
+
+void BlackBoxEngine::resetPlaying()
+{
+    amplifier_.reset();
+    speaker_.reset();
 }
 
 void BlackBoxEngine::warm(const Warmth& warmth)
@@ -75,8 +84,11 @@ void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
                 volts[k] = std::clamp(volts[k], -voltageLimit_, voltageLimit_);
             }
     const bool plays = played.runs();
-    if (plays)
-        speaker_.process(volts, sound_.data(), n);
+    if (plays) {
+        for (std::size_t k = 0; k < n; ++k)
+            sound_[k] = amplifier_.pass(volts[k]);
+        speaker_.process(sound_.data(), sound_.data(), n);
+    }
     for (std::size_t k = 0; k < n; ++k) {
         if (!waiting_.empty()) {
             std::swap(volts[k], waiting_[at_]);

@@ -18,6 +18,7 @@ struct AmplifierCoupling {
 
     static constexpr double lowest = 0.1, highest = 20.0;  ///< Hz
     bool passesConstant() const { return corner == 0.0; }
+    bool operator==(const AmplifierCoupling&) const = default;
     bool isValid(std::string* reason) const;
 };
 

@@ -32,6 +32,15 @@ void CouplingFilter::reset()
     coming_ = 0.0;
 }
 
+void CouplingFilter::charge(const std::array<double, 2>& state)
+{
+    reset();
+    if (order_ == 0)
+        return;
+    state_ = state;
+    foresee();
+}
+
 void CouplingFilter::take(double u)
 {
     if (order_ == 0)

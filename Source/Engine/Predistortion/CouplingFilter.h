@@ -17,12 +17,20 @@ public:
     CouplingFilter(const AmplifierCoupling&, double sampleRate);
 
     void reset();
-    void take(double u);  ///< the next sample, V
+    void charge(const std::array<double, 2>&);  ///< as if new, but charged to this state, V
+    void take(double u);                        ///< the next sample, V
 
     /// Of the next sample u, what is withheld is coming() + direct() u.
     double coming() const { return coming_; }
     double direct() const { return direct_; }
     double latest() const { return past_[0]; }  ///< V, the latest sample
+    /// Takes the next sample. @returns what of it reaches the loudspeaker, V
+    double pass(double u)
+    {
+        const double passed = u - (coming_ + direct_ * u);
+        take(u);
+        return passed;
+    }
 
     std::size_t order() const { return order_; }
     double state(std::size_t k) const { return state_[k]; }  ///< V, m of Withheld, at the latest sample

@@ -8,6 +8,7 @@ namespace excursion {
 
 DriverEngine::DriverEngine(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
     : bend_(model, options, controls),
+      amplifier_(options.coupling, options.sampleRate * options.oversampling),
       cone_(model, options.sampleRate * options.oversampling),
       coneRecovery_(static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
       perVolt_(1.0 / plateau(model)),
@@ -18,6 +19,7 @@ DriverEngine::DriverEngine(const Model& model, const RealTimeOptions& options, c
 void DriverEngine::reset()
 {
     bend_.reset();
+    amplifier_.reset();
     cone_.reset();
     coneRecovery_.reset();
 }
@@ -31,6 +33,7 @@ void DriverEngine::resetBending()
 
 void DriverEngine::resetPlaying()
 {
+    amplifier_.reset();
     cone_.reset();
     cone_.warm(bend_.warmth());
 }
@@ -49,7 +52,7 @@ void DriverEngine::play(std::size_t n, Fade& played)
         const double weight = played.step(), volume = coneRecovery_.step();
         for (int s = 0; s < factor_; ++s) {
             double& u = samples[k * static_cast<std::size_t>(factor_) + static_cast<std::size_t>(s)];
-            double a = u;
+            double a = amplifier_.pass(u);
             if (!cone_.step(a)) {
                 coneRecovery_.fault();
                 faults_.fetch_add(1, std::memory_order_relaxed);

@@ -3,14 +3,16 @@
 
 #include "Engine/Predistortion/ChainEngine.h"
 #include "Engine/Predistortion/Cone.h"
+#include "Engine/Predistortion/CouplingFilter.h"
 #include "Engine/Predistortion/Recovery.h"
 
 #include <atomic>
 
 namespace excursion {
 
-/// A physical driver in a chain: the Predistorter, with the Cone between the two halves of its oversampling. The cone's
-/// output is divided by the plateau of a linear driver (see plateau()), so that it can be compared with the signal.
+/// A physical driver in a chain: the Predistorter, with amplifier and Cone between the two halves of its oversampling.
+/// The cone's output is divided by the plateau of a linear driver (see plateau()), so that it can be compared with the
+/// signal.
 class DriverEngine : public ChainEngine {
 public:
     /// Throws Error, see requireRunnable.
@@ -35,6 +37,7 @@ private:
     void play(std::size_t n, Fade& played);
 
     Predistorter bend_;
+    CouplingFilter amplifier_;  ///< before the cone
     Cone cone_;
     Recovery coneRecovery_;
     double perVolt_;

@@ -53,16 +53,22 @@ void Linearizer::rest()
 {
     Warmth kept;
     keep(kept);
-    const auto charged = withheld_;
     reset();
     warm(kept);
-    withheld_ = charged;
+}
+
+void Linearizer::keep(Warmth& warmth) const
+{
+    (follows_ ? cone_ : wish_).inverse.keep(warmth);
+    for (std::size_t k = 0; k < withheld_.order(); ++k)
+        warmth.charge[k] = withheld_.state(k);
 }
 
 void Linearizer::warm(const Warmth& warmth)
 {
     for (auto* pair : {&wish_, &cone_})
         pair->inverse.warm(warmth);
+    withheld_.charge(warmth.charge);
 }
 
 void Linearizer::drift(const MotionPoint& motion, double seconds) { followed().inverse.drift(motion, seconds); }
@@ -98,7 +104,6 @@ double Linearizer::step(double u, double amount, double limit)
     wish_.step(left);
     wanted_ = u + amount * (perPassed_ * (wish_.made + kept) - u);
     const double out = std::clamp(wanted_, -limit, limit), given = passed_ * out - kept;
-    withheld_.take(out);
     if (follows_) {
         cone_.step(left);
         cone_.moveTo(given);

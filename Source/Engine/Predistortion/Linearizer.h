@@ -34,17 +34,18 @@ public:
     void reset();
     void rest();  ///< as reset(), but a coil stays as warm as it is, and an amplifier as charged
 
-    void keep(Warmth& warmth) const { (follows_ ? cone_ : wish_).inverse.keep(warmth); }  ///< of the cone: what is slow
+    void keep(Warmth&) const;  ///< of cone and amplifier: what is slow
     void warm(const Warmth&);
     /// While nothing is linearized: the coil goes on, for a time, by the motion that the driver has instead.
     void drift(const MotionPoint&, double seconds);
-    void pass(double out) { withheld_.take(out); }       ///< the same of the amplifier, which is given these volts
+    /// What the amplifier is given, V: after each step, and while nothing is linearized.
+    void pass(double out) { withheld_.take(out); }
     double rise() { return followed().inverse.rise(); }  ///< ohm, of the coil's resistance
 
     /// @param u       V (or N for a driver without a coil)
     /// @param amount  0 to 1
     /// @param limit   V (or N); may be infinite
-    /// @returns the output, V (or N)
+    /// @returns the output, V (or N); pass() it, or what is given in its place
     double step(double u, double amount, double limit);
 
     /// The output at the latest sample without the limit, V.

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Resonance.h"
+#include "Engine/Predistortion/CouplingFilter.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
 #include "Engine/Signal/Fft.h"
@@ -17,8 +18,8 @@ namespace excursion {
 namespace {
 
 /// The last of so many periods of the acceleration, as a spectrum.
-std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, const std::vector<double>& period,
-                                          int periods, const Progress& progress)
+std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, CouplingFilter amplifier,
+                                          const std::vector<double>& period, int periods, const Progress& progress)
 {
     std::vector<double> out(period.size());
     for (int k = 0; k < periods; ++k) {
@@ -26,6 +27,8 @@ std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, 
         out = period;
         if (bend != nullptr)
             bend->process(out.data(), out.data(), out.size());
+        for (auto& sample : out)
+            sample = amplifier.pass(sample);
         speaker.process(out.data(), out.data(), out.size());
     }
     return fft(out);
@@ -55,8 +58,9 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     constexpr int periods = 4;
     Speaker plain(model, options), played(model, options);
     Predistorter bend(model, options, controls);
-    const auto before = settled(plain, nullptr, period, periods, progress),
-               after = settled(played, &bend, period, periods, progress);
+    const CouplingFilter amplifier(options.coupling, options.sampleRate);
+    const auto before = settled(plain, nullptr, amplifier, period, periods, progress),
+               after = settled(played, &bend, amplifier, period, periods, progress);
 
     PredictedDistortion result;
     result.displacement = plain.collectMeters().displacement;

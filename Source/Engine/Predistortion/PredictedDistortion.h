@@ -19,7 +19,8 @@ struct PredictedDistortion {
 };
 
 /// Plays an odd random-phase multisine, pink from a third of the resonance to 8 kHz (at most 0.17 of the sample rate),
-/// to the model and to the linearized model, and sums the power on the silent lines of the cone's acceleration.
+/// to the model and to the linearized model, both behind the amplifier of the options, and sums the power on the silent
+/// lines of the cone's acceleration.
 /// @param volts  peak of the multisine, V
 /// Throws Error, see requireRunnable; (usage) if volts is not positive; (cancelled).
 PredictedDistortion predictDistortion(const Model&, const PredistortionControls&, double volts,

@@ -115,7 +115,7 @@ double Predistorter::heatBy(const double* volts, std::size_t n)
     if (!(ohms_ > 0.0))
         return squares;
     for (std::size_t k = 0; k < n; ++k) {
-        const auto& motion = plain_.step(std::abs(volts[k]) < plausible_.input() ? volts[k] : 0.0);
+        const auto& motion = plain_.step(sound(volts[k]));
         linearizer_.drift(motion, period_);
         squares += motion.i * motion.i;
     }
@@ -126,6 +126,9 @@ void Predistorter::pass(const double* volts, std::size_t n)
 {
     const FlushSubnormals flush;
     const auto samples = static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k)
+        for (int s = 0; s < oversampling_.factor(); ++s)
+            linearizer_.pass(sound(volts[k]));
     if (n > 0)
         protection_.rest((ohms_ + linearizer_.rise()) * heatBy(volts, n) / samples, samples);
 }
@@ -152,12 +155,17 @@ void Predistorter::bend(double& sample, double amount)
         correction_ += out - asked;
     }
     sample = last_ = out + left_;
+    linearizer_.pass(sample);
     left_ *= decay_;
 }
 
 void Predistorter::fault()
 {
+    // An amplifier cannot lose its charge; what is known of the coil may be what went wrong.
+    Warmth kept;
+    linearizer_.keep(kept);
     linearizer_.reset();
+    linearizer_.warm({.charge = kept.charge});
     recovery_.fault();
     left_ = last_;
     faults_.fetch_add(1, std::memory_order_relaxed);
@@ -182,10 +190,10 @@ void Predistorter::begin(const double* in, std::size_t n)
         effort_.aim(protection_.effort());
     }
     for (std::size_t k = 0; k < n; ++k) {
-        const bool sound = std::abs(in[k]) < plausible_.input();  // not for NaN
-        if (!sound)
+        const bool holds = std::abs(in[k]) < plausible_.input();  // not for NaN
+        if (!holds)
             faults_.fetch_add(1, std::memory_order_relaxed);
-        block_[k] = recovery_.step() * protection_.step(target_.step(sound ? in[k] : 0.0), sound);
+        block_[k] = recovery_.step() * protection_.step(target_.step(sound(in[k])), holds);
     }
     if (!bends())
         squares_ += static_cast<double>(factor) * heatBy(block_.data(), n);

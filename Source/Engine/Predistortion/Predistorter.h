@@ -66,7 +66,7 @@ public:
 
     Warmth warmth() const;     ///< of the coil
     void warm(const Warmth&);  ///< as it is from before
-    /// While process() is not called: the driver is given these volts, n samples, which warm its coil.
+    /// While process() is not called: the amplifier is given these volts, n samples, which charge it and warm the coil.
     void pass(const double* volts, std::size_t n);
 
     /// Since the last call of collectMeters(); may be read from another thread.
@@ -83,6 +83,7 @@ public:
 private:
     bool bends() const { return on_ || amount_.value() > 0.0; }
     void bend(double& sample, double amount);
+    double sound(double volts) const { return std::abs(volts) < plausible_.input() ? volts : 0.0; }
     double heatBy(const double* volts, std::size_t n);
     void fault();
 

@@ -11,9 +11,11 @@ namespace excursion {
 
 /// Options that are fixed while a signal runs. A change needs a new Predistorter or Speaker.
 struct RealTimeOptions {
-    double sampleRate = 48000.0;      ///< Hz
-    int oversampling = 2;             ///< 1, 2 or 4
-    AmplifierCoupling coupling = {};  ///< behind a Predistorter; what plays a model hears none of it
+    double sampleRate = 48000.0;  ///< Hz
+    int oversampling = 2;         ///< 1, 2 or 4
+    /// between a Predistorter and the loudspeaker; a Speaker, which is given the loudspeaker's voltage, knows none of
+    /// it
+    AmplifierCoupling coupling = {};
     bool isValid(std::string* reason) const;
 };
 

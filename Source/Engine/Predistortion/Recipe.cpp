@@ -11,7 +11,7 @@
 namespace excursion {
 namespace {
 
-constexpr DocumentFormat recipeFormat {"excursion-recipe", 4};
+constexpr DocumentFormat recipeFormat {"excursion-recipe", 5};
 
 struct Names {
     std::string_view name, title;
@@ -25,7 +25,7 @@ constexpr std::array<Names, modes.size()> names {{{"bypass", "Bypass"},
 constexpr std::array<std::string_view, 6> targetKinds {"own", "resonance", "closed-box", "flat", "bands", "response"};
 
 /// Version 1 knew neither a limit of the power nor a margin, version 2 no target, version 3 no resistance and
-/// no target that equalizes.
+/// no target that equalizes, version 4 no amplifier.
 int versionOf(const JsonField& field)
 {
     const auto number = field.at("version");
@@ -33,7 +33,7 @@ int versionOf(const JsonField& field)
     while (version > 1 && number.value() != version)
         --version;
     if (number.value() != version)
-        number.refuse("1, 2, 3 or 4, the versions that this program reads");
+        number.refuse("1 to 5, the versions that this program reads");
     DocumentFormat {recipeFormat.name, version}.require(field);
     return version;
 }
@@ -101,6 +101,8 @@ bool Recipe::isValid(std::string* reason) const
            && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
            && check(resistances.holds(coilResistance), "the resistance of a coil must lie between 0 and 1000 ohm")
            && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB")
+           && check(couplings.holds(coupling), "the corner of the amplifier must lie between 0 and 20 Hz")
+           && check(couplingOrder == 1 || couplingOrder == 2, "the order of the amplifier's high-pass must be 1 or 2")
            && check(targetFrequencies.holds(target.frequency) && targetQualities.holds(target.quality)
                         && targetVolumes.holds(target.volume) && targetEnds.holds(target.low)
                         && targetEnds.holds(target.high) && target.areSound(),
@@ -136,6 +138,13 @@ PredistortionControls controlsOf(const Recipe& recipe, const Model& model)
     return controlsOf(static_cast<const Settings&>(recipe), measuredDisplacement(model));
 }
 
+AmplifierCoupling couplingOf(const Settings& settings)
+{
+    if (settings.coupling < 0.5 * AmplifierCoupling::lowest)
+        return {};
+    return {std::max(settings.coupling, AmplifierCoupling::lowest), settings.couplingOrder};
+}
+
 nlohmann::ordered_json toJson(const Recipe& recipe)
 {
     return recipeFormat.with({{"title", recipe.title},
@@ -149,6 +158,8 @@ nlohmann::ordered_json toJson(const Recipe& recipe)
                               {"margin", recipe.margin},
                               {"coilResistance", recipe.coilResistance},
                               {"trimDb", recipe.trimDb},
+                              {"coupling", recipe.coupling},
+                              {"couplingOrder", recipe.couplingOrder},
                               {"target", documentOf(recipe.target)},
                               {"off", recipe.off}});
 }
@@ -178,6 +189,10 @@ Recipe recipeFromJson(const JsonField& field)
     if (version > 3)
         recipe.coilResistance = within("coilResistance", Settings::resistances);
     recipe.trimDb = within("trimDb", Settings::trims);
+    if (version > 4) {
+        recipe.coupling = within("coupling", Settings::couplings);
+        recipe.couplingOrder = field.at("couplingOrder").count(1, 2);
+    }
     if (version > 2)
         recipe.target = targetFrom(field.at("target"), version);
     known.clear();

@@ -37,6 +37,8 @@ struct Settings {
     double margin = 0.0;             ///< relative, of the model's parameters, see PredistortionControls
     double coilResistance = 0.0;     ///< ohm, for models without physics; 0: not known, and no power limit
     double trimDb = 0.0;             ///< gain of the output
+    double coupling = 0.0;           ///< Hz, corner of the amplifier's high-pass; 0: none
+    int couplingOrder = 1;           ///< 1 or 2
     Target target;                   ///< of linearization
 
     struct Range {
@@ -45,13 +47,13 @@ struct Settings {
     };
     static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0},
         voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, resistances {0.0, 1000.0},
-        trims {-60.0, 24.0};
+        trims {-60.0, 24.0}, couplings {0.0, AmplifierCoupling::highest};
     /// ranges of a target: Hz, Q, m^3, Hz for the ends of a band, dB for a curve
     static constexpr Range targetFrequencies {5.0, 5000.0}, targetQualities {0.2, 3.0}, targetVolumes {1e-4, 1.0},
         targetEnds {20.0, 20000.0}, targetLevels {-200.0, 300.0};
 };
 
-/// All user settings: how a model is used, whichever it is. As a document, format "excursion-recipe", version 4
+/// All user settings: how a model is used, whichever it is. As a document, format "excursion-recipe", version 5
 /// (Docs/Formats.md).
 struct Recipe : Settings {
     std::string title;
@@ -69,6 +71,9 @@ Model withoutOff(const Model&, const Recipe&);
 /// The second is of a model as it was loaded, with the effects that are switched off: they say how far it was measured.
 PredistortionControls controlsOf(const Settings&, double measuredDisplacement);
 PredistortionControls controlsOf(const Recipe&, const Model&);
+
+/// The amplifier of the settings. Between none and the lowest corner that can be stated lies the nearer of the two.
+AmplifierCoupling couplingOf(const Settings&);
 
 nlohmann::ordered_json toJson(const Recipe&);
 /// Throws Error (input): the file, the field, what was found and what is expected.

@@ -8,10 +8,11 @@ namespace excursion {
 
 class Effect;
 
-/// How warm a loudspeaker is: what is left of what it was played when all that swings has come to rest. It outlives an
-/// engine, since the coil does.
+/// How warm a loudspeaker is, and how charged the amplifier before it: what is left of what they were played when all
+/// that swings has come to rest. It outlives an engine, since they do.
 struct Warmth {
-    double heat = 0.0;  ///< W, running mean of the coil's heat
+    double heat = 0.0;                ///< W, running mean of the coil's heat
+    std::array<double, 2> charge {};  ///< V, m of Withheld (AmplifierCoupling.h)
 
     /// The memory of an effect that is slow (Effect::slow), by which a coil's resistance rises.
     struct Memory {
