@@ -64,7 +64,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
                              {Settings::resistances, 100, 8.0, 1.0, "ohm", "not known"}, first.coilResistance);
     targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
     targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
-    coupling_ = number("coupling", "Amplifier high-pass", {Settings::couplings, 10, 3.0, 1.0, "Hz", "none"},
+    coupling_ = number("coupling", "Amplifier high-pass", {Settings::couplings, 10, 3.0, 1.0, "Hz", "no high-pass"},
                        first.coupling);
     couplingOrder_ = added(new Choice("couplingOrder", "Amplifier order", {"1st order", "2nd order"}));
 }
