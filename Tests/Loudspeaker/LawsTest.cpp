@@ -140,6 +140,37 @@ TEST_CASE("Beside eddy currents Le(x) is the inductance of the blocked coil an o
     }
 }
 
+TEST_CASE("What is large for a law stays so when loops in the iron or creep take over the base parameter", "[laws]")
+{
+    for (const auto* const law : {"inductance-position", "inductance-current"}) {
+        auto model = driverWith({"eddy-currents", law});
+        parameterOf(model, 1, "Ks").value = 0.05;
+        parameterOf(model, 1, "a").value = 0.6;
+        auto& Le = model.baseParameter("Le").value;
+        resize(model, 2);
+        const double before = model.components[2].operatingRange.scale,
+                     w = std::numbers::pi * someOperatingRange(1.0).highFrequency;
+        const double loops = 0.05 * std::pow(w, -0.4) * std::sin(0.3 * std::numbers::pi);
+        CHECK(before == Approx(Le + loops).epsilon(1e-3));
+        Le *= 1e-6;
+        resize(model, 2);
+        CHECK(model.components[2].operatingRange.scale == Approx(loops).epsilon(1e-3));
+        auto anew = driverWith({"eddy-currents"});
+        anew.components[1] = model.components[1];
+        anew.baseParameter("Le").value = Le;
+        anew = withEffect(anew, effectNamed(law), someOperatingRange(1.0));
+        CHECK(anew.components[2].operatingRange.scale == Approx(loops).epsilon(1e-3));
+    }
+    auto model = driverWith({"creep", "stiffness"});
+    const double K = model.baseParameter("K").value, lowest = model.components[1].operatingRange.lowFrequency;
+    parameterOf(model, 1, "S").value = 0.5 * K;
+    parameterOf(model, 1, "centre").value = std::log10(2.0 * lowest);
+    parameterOf(model, 1, "width").value = parameterOf(model, 1, "tilt").value = 0.0;
+    model.baseParameter("K").value = 0.01 * K;
+    resize(model, 2);
+    CHECK(model.components[2].operatingRange.scale == Approx(0.01 * K + 0.1 * K));
+}
+
 TEST_CASE("Beside eddy currents Le(i) has them added, and Bl(x) holds at any frequency", "[laws]")
 {
     auto model = driverWith({"eddy-currents", "inductance-current", "force-factor"});

@@ -61,6 +61,35 @@ TEST_CASE("Eigenvalues of a companion matrix are the roots of its polynomial", "
     CHECK(eigenvalues(MatrixXd(0, 0)).size() == 0);
 }
 
+TEST_CASE("Whether eigenvalues are within a radius is told on either side of it", "[decompositions]")
+{
+    const auto tells = [](const MatrixXd& A, double radius) {
+        for (const double near : {1e-6, 1e-3, 0.3}) {
+            CHECK(isWithin(A, radius * (1.0 + near)));
+            CHECK_FALSE(isWithin(A, radius / (1.0 + near)));
+        }
+        CHECK(isWithin(A, 1e6 * radius));
+        CHECK_FALSE(isWithin(A, 1e-6 * radius));
+    };
+    tells(companion(), 3.0);
+    tells(chain(30), chainValue(30, 30));
+    const VectorXd units = VectorXd::LinSpaced(30, -6.0, 6.0).unaryExpr([](double e) { return std::pow(10.0, e); });
+    tells(units.asDiagonal() * chain(30) * units.cwiseInverse().asDiagonal(), chainValue(30, 30));
+    MatrixXd turns = MatrixXd::Zero(4, 4);  // 2j and -2j, twice: a trace of 0, and the powers' turn
+    turns(0, 1) = turns(2, 3) = 2.0;
+    turns(1, 0) = turns(3, 2) = -2.0;
+    tells(turns, 2.0);
+    MatrixXd leads = MatrixXd::Zero(5, 5);  // one state leads to the next: powers vanish
+    leads.diagonal(1).setConstant(100.0);
+    CHECK(isWithin(leads, 1e-3));
+    leads.diagonal().setConstant(0.9);  // and grow for long before they do
+    CHECK(isWithin(leads, 0.95));
+    CHECK_FALSE(isWithin(leads, 0.85));
+    CHECK(isWithin(MatrixXd(), 1.0));
+    leads(0, 0) = std::nan("");
+    CHECK_FALSE(isWithin(leads, 1e9));
+}
+
 TEST_CASE("Eigenvectors are those of powers, of length 1", "[decompositions]")
 {
     const auto found = eigenvectors(companion());

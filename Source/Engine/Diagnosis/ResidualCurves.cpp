@@ -199,7 +199,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     const Lacking lacking(model, record);
     if (!lacking.isTold())
         return {};
-    const StepDivision division(model, record.sampleRate);
+    const StepDivision division(model, record.sampleRate, 1);
     const auto leadIn = settlingTime(model, record);
     const auto from = startStates(model, record, sections, leadIn, false, 1);
     Motions motions;

@@ -71,7 +71,7 @@ struct OperatingRange {
     double lowFrequency = 10.0;    ///< Hz, lowest frequency of interest
     double highFrequency = 1.0e4;  ///< Hz, highest frequency of interest
     int degree = 6;                ///< degree of a law's expansion
-    /// the base parameter that sets the effect's scale, in its unit: what is large for a law
+    /// what is large for a law, in the unit of the base parameter that it modifies, see resize()
     double scale = 1.0;
     double duration = 10.0;  ///< s, of the take: the time that a slow memory had
     /// relaxed parameters may differ from zero; false saves the memory that they need

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
 namespace excursion {
@@ -22,25 +21,6 @@ double spectralRadius(const Eigen::MatrixXd& J)
         return eigenvalues(J).cwiseAbs().maxCoeff();
     const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
     return std::max(std::abs(half + root), std::abs(half - root));
-}
-
-/// Not less than max |lambda|, in a small part of the time: a largest sum of magnitudes, in units in which what leads
-/// to a state weighs as much as what it leads to (Osborne 1960, J. ACM 7).
-double radiusBound(Eigen::MatrixXd J)
-{
-    if (!J.allFinite())
-        return std::numeric_limits<double>::infinity();
-    constexpr int sweeps = 3;
-    for (int n = 0; n < sweeps; ++n)
-        for (Eigen::Index k = 0; k < J.rows(); ++k) {
-            const double own = std::abs(J(k, k)), into = J.row(k).lpNorm<1>() - own, from = J.col(k).lpNorm<1>() - own;
-            const double unit = std::sqrt(from / into);
-            if (!(std::isfinite(unit) && unit > 0.0))
-                continue;
-            J.row(k) *= unit;
-            J.col(k) /= unit;
-        }
-    return std::min(J.cwiseAbs().rowwise().sum().maxCoeff(), J.cwiseAbs().colwise().sum().maxCoeff());
 }
 
 /// Memories that are shares of a limit, at that limit where the cone slides; whether there are any. They are those in
@@ -182,12 +162,16 @@ bool ExponentialStep::isStable(const Eigen::MatrixXd& slope) const
 {
     constexpr double explicitLimit = 2.0;  // of Runge and Kutta's method of fourth order, 2.8 on either axis
     constexpr double rounding = 1e-4, inexact = 0.05;  // where all decays, and where something truly grows
-    const auto own = among(slope);
-    if (step_ * radiusBound(own) <= explicitLimit || step_ * spectralRadius(own) <= explicitLimit)
+    constexpr double threefold = 3.0;
+    if (isWithin(among(slope), explicitLimit / step_))
         return true;
     const auto difference = differenceNear(slope);
-    const double grows = std::max(0.0, eigenvalues(difference.rate).real().maxCoeff());
-    return spectralRadius(difference.step) <= (1.0 + (grows > 0.0 ? inexact : rounding)) * std::exp(step_ * grows);
+    if (isWithin(difference.step, 1.0 + rounding))  // whether anything grows or not
+        return true;
+    if (!isWithin(difference.step, threefold))  // no motion grows by as much within a step
+        return false;
+    const double grows = eigenvalues(difference.rate).real().maxCoeff();
+    return grows > 0.0 && isWithin(difference.step, (1.0 + inexact) * std::exp(step_ * grows));
 }
 
 bool ExponentialStep::isStable(const std::vector<LawSlope>& places) const

@@ -326,7 +326,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         // What the take does not show is expected better from the model that has been found.
         constexpr int mostRounds = 4;
         const int rounds = std::min(mostRounds, options.search.maximumIterations);  // each takes a step
-        constexpr double settled = 0.95;
+        constexpr double settled = 0.95, moved = 0.99;
         double before = std::numeric_limits<double>::infinity();
         for (int n = 0; n < rounds; ++n) {
             if (n > 0) {
@@ -339,7 +339,9 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             if (n > 0 && !round.usable())
                 break;
             summary = round;
-            if (!(summary.usable() && summary.finalCost < settled * before))
+            // a model that has hardly moved expects what it did before
+            if (!(summary.usable() && summary.finalCost < settled * before
+                  && summary.finalCost < moved * summary.initialCost))
                 break;
             before = summary.finalCost;
         }

@@ -137,7 +137,7 @@ OperatingRange visitedRange(const Model& model, const Record& record, int degree
             }
         }
     if (x == 0.0 || (i == 0.0 && model.electrical())) {
-        const StepDivision division(model, record.sampleRate);
+        const StepDivision division(model, record.sampleRate, 1);
         double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
         for (const auto& section : record.sections) {
             Trajectory run;

@@ -101,6 +101,21 @@ void follow(Component& component, bool Parameter::*kind, bool OperatingRange::*n
         }
 }
 
+/// What is large for an effect of that size: the base parameter, with what relaxes beside it, each where a take tells
+/// their sum best (Laws.cpp). A coil of which loops in the iron are most has hardly an inductance of its own.
+double sizeBy(const Model& model, const std::string& base)
+{
+    double sum = model.baseParameter(base).value;
+    if (base == "Le" || base == "K")
+        for (const auto& one : model.components)
+            if (one.effect->relaxes() && isAtWork(one)) {
+                const auto& e = one.operatingRange;
+                sum += one.effect->addsTo(base, e, valuesOf(one).data(),
+                                          base == "K" ? e.lowFrequency : 0.5 * e.highFrequency);
+            }
+    return sum;
+}
+
 }  // namespace
 
 bool sharesBase(const Model& model, const Effect& effect)
@@ -125,7 +140,7 @@ Model withEffect(Model model, const Effect& effect, const OperatingRange& visite
     operatingRange.relaxed = relaxes(model, effect.electrical());
     operatingRange.joint = sharesBase(model, effect);
     if (const auto base = effect.sizedBy(); !base.empty())
-        operatingRange.scale = model.baseParameter(base).value;
+        operatingRange.scale = sizeBy(model, base);
     Component component {&effect, operatingRange, effect.parameters(operatingRange)};
     const auto starts = effect.starts(operatingRange);
     const auto& values = starts.at(start);
@@ -150,10 +165,9 @@ void resize(Model& model, std::size_t k)
     if (base.empty())
         return;
     auto& range = component.operatingRange;
-    range.scale = model.baseParameter(base).value;
+    range.scale = sizeBy(model, base);
     if (!component.effect->creeps())
         return;
-    range.scale += component.effect->addsTo(base, range, valuesOf(component).data(), range.lowFrequency);
     const auto sized = component.effect->parameters(range);
     for (std::size_t n = 0; n < sized.size(); ++n)
         component.parameters[n].prior = sized[n].prior;

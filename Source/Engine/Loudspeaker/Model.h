@@ -84,8 +84,9 @@ bool movable(const Model&, const Effect&, const Parameter&);
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
 /// The model with one more component as it is. The covariance goes: it tells nothing of the new parameters.
 Model withComponent(Model, Component);
-/// Makes OperatingRange::scale of component k follow its base parameter. What creeps may take over any share of the
-/// stiffness: its scale is that at the lowest frequency, whoever of the two has it, and its priors follow.
+/// Makes OperatingRange::scale of component k follow its base parameter, K and Le with what relaxes beside them: creep
+/// may take over any share of the stiffness and loops in the iron any of the inductance, and neither is to change what
+/// is large for a law. The priors of what creeps follow.
 void resize(Model&, std::size_t k);
 /// Adjusts every component to the others: resizes it, and parameters that have a meaning only with other effects are
 /// free if these are present, or else zero.

@@ -190,7 +190,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     options.substeps = std::max(wanted.substeps, 1);
     if (gradient)
         options.gradientSubsteps = std::max(wanted.gradientSubsteps, stableSubsteps(model, record.sampleRate));
-    const StepDivision division(model, record.sampleRate);
+    const StepDivision division(model, record.sampleRate, options.threads);
     const auto from = startStates(model, record, sections, leadIn, gradient, options.threads);
     const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
     std::vector<SectionFit> fits(sections.size());

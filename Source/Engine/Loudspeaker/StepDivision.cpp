@@ -2,9 +2,11 @@
 #include "Engine/Loudspeaker/StepDivision.h"
 
 #include "Engine/Loudspeaker/StepParts.h"
+#include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace excursion {
 namespace {
@@ -20,37 +22,63 @@ int StepDivision::cellOfVelocity(double share)
     return share < 0.0 ? level : speeds + level;
 }
 
-StepDivision::StepDivision(const Model& model, double sampleRate)
+StepDivision::StepDivision(const Model& model, double sampleRate, unsigned threads)
 {
     constexpr std::array<double, speeds> shares {0.25, 0.5, 1.0};
     StepParts parts(model, 1.0 / sampleRate);
-    for (const auto& slope : parts[0].lawSlopes(ExponentialStep::Places::all, shares)) {
+    const auto slopes = parts[0].lawSlopes(ExponentialStep::Places::all, shares);
+    std::vector<std::array<std::vector<const ExponentialStep::LawSlope*>, cellsV>> places;  // [table][velocity]
+    for (const auto& slope : slopes) {
         auto table = std::find_if(tables_.begin(), tables_.end(), [&](const Table& known) {
             return known.displacement == slope.range->displacement && known.velocity == slope.range->velocity
                    && known.current == slope.range->current;
         });
-        if (table == tables_.end())
+        if (table == tables_.end()) {
             table = tables_.insert(table, {slope.range->displacement, slope.range->velocity, slope.range->current});
-        const int v = cellOfVelocity(slope.velocity);
-        const int x = static_cast<int>(std::lround(4.0 * (slope.displacement + 1.0)));  // the cells on either side
-        const int lowX = std::max(0, x - 1), highX = std::min(cellsX - 1, x);
-        const int end = slope.current < 0.0 ? 0 : cellsI - 1, middle = 1;
-        const bool inner = std::abs(slope.current) < 0.5 * (1.0 + outer);
-        const auto each = [&](const auto& work) {
-            for (int k = lowX; k <= highX; ++k) {
-                work(table->power[static_cast<std::size_t>(cellOf(k, end, v))]);
-                if (inner)
-                    work(table->power[static_cast<std::size_t>(cellOf(k, middle, v))]);
-            }
-        };
-        constexpr int powers = StepParts::powers;
-        signed char least = powers;
-        each([&](signed char known) { least = std::min(least, known); });
-        int power = least;  // where all cells have more this place asks for nothing
-        while (power < powers - 1 && !parts[power].isStable(slope.slope))
-            ++power;
-        each([&](signed char& known) { known = std::max(known, static_cast<signed char>(power)); });
+            places.emplace_back();
+        }
+        places[static_cast<std::size_t>(table - tables_.begin())]
+              [static_cast<std::size_t>(cellOfVelocity(slope.velocity))]
+                  .push_back(&slope);
     }
+    std::mutex making;
+    const auto isStable = [&](int power, const Eigen::MatrixXd& slope) {
+        const auto& part = [&]() -> const ExponentialStep& {
+            const std::lock_guard lock(making);
+            return parts[power];
+        }();
+        return part.isStable(slope);
+    };
+    inParallel(tables_.size() * cellsV, threads, {}, [&](std::size_t n) {  // of which none shares a cell with another
+        for (const auto* slope : places[n / cellsV][n % cellsV])
+            divide(tables_[n / cellsV], *slope, isStable);
+        return true;
+    });
+}
+
+/// Raises the cells about a place to the least power that is stable there.
+template <class IsStable>
+void StepDivision::divide(Table& table, const ExponentialStep::LawSlope& slope, const IsStable& isStable)
+{
+    const int v = cellOfVelocity(slope.velocity);
+    const int x = static_cast<int>(std::lround(4.0 * (slope.displacement + 1.0)));  // the cells on either side
+    const int lowX = std::max(0, x - 1), highX = std::min(cellsX - 1, x);
+    const int end = slope.current < 0.0 ? 0 : cellsI - 1, middle = 1;
+    const bool inner = std::abs(slope.current) < 0.5 * (1.0 + outer);
+    const auto each = [&](const auto& work) {
+        for (int k = lowX; k <= highX; ++k) {
+            work(table.power[static_cast<std::size_t>(cellOf(k, end, v))]);
+            if (inner)
+                work(table.power[static_cast<std::size_t>(cellOf(k, middle, v))]);
+        }
+    };
+    constexpr int powers = StepParts::powers;
+    signed char least = powers;
+    each([&](signed char known) { least = std::min(least, known); });
+    int power = least;  // where all cells have more this place asks for nothing
+    while (power < powers - 1 && !isStable(power, slope.slope))
+        ++power;
+    each([&](signed char& known) { known = std::max(known, static_cast<signed char>(power)); });
 }
 
 int StepDivision::power(double i, double x, double v) const

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/ExponentialStep.h"
 
 #include <array>
 #include <vector>
@@ -14,7 +14,8 @@ namespace excursion {
 /// grows everywhere.
 class StepDivision {
 public:
-    StepDivision(const Model&, double sampleRate);
+    /// The result does not depend on the number of threads.
+    StepDivision(const Model&, double sampleRate, unsigned threads);
 
     /// The power of two of the parts, below StepParts::powers.
     /// @param i  current, A
@@ -32,6 +33,8 @@ private:
         double displacement, velocity, current;  ///< of the range
         std::array<signed char, cellsX * cellsI * cellsV> power {};
     };
+    template <class IsStable>
+    static void divide(Table&, const ExponentialStep::LawSlope&, const IsStable&);
     static int cellOfVelocity(double share);
     static int cellOf(int x, int i, int v) { return (x * cellsI + i) * cellsV + v; }
 

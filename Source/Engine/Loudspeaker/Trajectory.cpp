@@ -26,7 +26,7 @@ const std::vector<double>& Trajectory::operator[](Trace trace) const
 bool integrate(const Model& model, const Drive& drive, const Window& window, Trajectory& out,
                const Eigen::VectorXd& start)
 {
-    return integrate(model, drive, StepDivision(model, 1.0 / (drive.step() * drive.substeps())), window, out, start);
+    return integrate(model, drive, StepDivision(model, 1.0 / (drive.step() * drive.substeps()), 1), window, out, start);
 }
 
 bool integrate(const Model& model, const Drive& drive, const StepDivision& division, const Window& window,
