@@ -154,7 +154,7 @@ TEST_CASE("A step is divided where a law is steep, and nowhere else", "[stabilit
 {
     // a coil that loses nearly all of its inductance at either end, and iron that holds it there
     const auto model = coilInIron(12.0, 0.5);
-    const StepDivision division(model, fs);
+    const StepDivision division(model, fs, 2);
     const auto range = model.components.back().operatingRange;
     CHECK(division.power(0.0, 0.0, 0.0) == 0);
     CHECK(division.power(range.current, 0.0, range.velocity) == 0);
@@ -179,7 +179,7 @@ TEST_CASE("A step is divided where a law is steep, and nowhere else", "[stabilit
     }
     SECTION("without laws it is never divided")
     {
-        const StepDivision linear(makeModel("electrodynamic"), fs);
+        const StepDivision linear(makeModel("electrodynamic"), fs, 1);
         CHECK(linear.power(1e3, 1.0, 1e3) == 0);
     }
 }
@@ -188,10 +188,10 @@ TEST_CASE("The parts of a step follow its input as the step does", "[stability]"
 {
     // Parts of an exact step are exact, so a law that is hardly there may divide the step or not.
     auto model = coilInIron(12.0, 0.5);
-    const StepDivision division(model, fs);
+    const StepDivision division(model, fs, 2);
     auto& strength = model.components.back().parameters[1].value;
     strength *= 1e-9;
-    const StepDivision whole(model, fs);
+    const StepDivision whole(model, fs, 1);
     DividedStep one(model, whole, 1.0 / fs), parted(model, division, 1.0 / fs);
     const auto range = model.components.back().operatingRange;
     Eigen::VectorXd z;

@@ -93,8 +93,10 @@ FitSummary fitWithRoom(Model& model, const Record& record, const std::vector<std
         return run(model, {iterations, tolerance}, fedGradient, fedGradient && tolerance < 1e-4, from, to);
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
-    if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
-        summary = stage(15, 1e-3, false, 0.2, 0.3);
+    // Where laws rule the motion the slopes of fed ones may lead nowhere. Those of the simulation cost as much as dozens
+    // of simulations: they go on while a step is well worth it.
+    if (summary.usable() && !near(summary))
+        summary = stage(15, 0.03, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
     if (record.noiseKnown && hasPeriods(record))
