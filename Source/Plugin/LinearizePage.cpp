@@ -116,7 +116,6 @@ void LinearizePage::showModel(const AnyModel& model)
                            : id == "margin"          ? moves
                            : id == "powerLimit"      ? coil
                            : id == "coilResistance"  ? box_ && coil
-                           : id == "coupling"        ? !box_ || box_->played.rehearsal
                                                      : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
@@ -301,10 +300,7 @@ void LinearizePage::useAdapted()
 }
 
 /// Whether there is a high-pass, which has an order.
-bool LinearizePage::statesAmplifier() const
-{
-    return !couplingOf(processor_.parameters().settings()).passesConstant() && (!box_ || box_->played.rehearsal);
-}
+bool LinearizePage::statesAmplifier() const { return !couplingOf(processor_.parameters().settings()).passesConstant(); }
 
 /// What a host has moved.
 void LinearizePage::follow()

@@ -61,7 +61,7 @@ juce::String Number::text(double value) const
 {
     if (*scale_.most && value >= scale_.range.most)
         return scale_.most;
-    if (*scale_.least && value <= scale_.range.least)
+    if (*scale_.least && snapped(value) <= scale_.range.least)
         return scale_.least;
     return juce::String(value * scale_.shown,
                         static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));

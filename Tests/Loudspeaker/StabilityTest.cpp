@@ -171,7 +171,7 @@ TEST_CASE("A step is divided where a law is steep, and nowhere else", "[stabilit
         auto& friction = held.components.back();
         friction.parameters[0].value = 0.1 * friction.parameters[0].prior;
         friction.parameters[1].value = 2.5e-3 * range.displacement;
-        const StepDivision byFriction(held, fs);
+        const StepDivision byFriction(held, fs, 1);
         const int fast = byFriction.power(0.0, 0.0, range.velocity);
         CHECK(fast > 0);
         CHECK(byFriction.power(0.0, 0.0, 0.2 * range.velocity) < fast);

@@ -5,11 +5,14 @@
 #include "Engine/Numerics/Schur.h"
 #include "Engine/Numerics/ThinSvd.h"
 
+#include <Eigen/QR>
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdlib>
 #include <numbers>
 
 using namespace excursion;
@@ -85,6 +88,14 @@ TEST_CASE("Whether eigenvalues are within a radius is told on either side of it"
     leads.diagonal().setConstant(0.9);  // and grow for long before they do
     CHECK(isWithin(leads, 0.95));
     CHECK_FALSE(isWithin(leads, 0.85));
+    for (int seed = 0; seed < 20; ++seed) {  // so far from normal that the rounding errors of powers have a trace
+        std::srand(static_cast<unsigned>(seed));
+        const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(MatrixXd::Random(4, 4)).householderQ();
+        MatrixXd T = MatrixXd::Zero(4, 4);
+        T.diagonal() << 0.95, 0.7, -0.4, 0.1;
+        T(0, 1) = 1e6;
+        CHECK(isWithin(Q * T * Q.transpose(), 1.0));
+    }
     CHECK(isWithin(MatrixXd(), 1.0));
     leads(0, 0) = std::nan("");
     CHECK_FALSE(isWithin(leads, 1e9));

@@ -93,19 +93,18 @@ FitSummary fitWithRoom(Model& model, const Record& record, const std::vector<std
         return run(model, {iterations, tolerance}, fedGradient, fedGradient && tolerance < 1e-4, from, to);
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
-    // Where laws rule the motion the slopes of fed ones may lead nowhere. Those of the simulation cost as much as dozens
-    // of simulations: they go on while a step is well worth it.
+    // Where laws rule the motion the slopes of fed ones may lead nowhere. Those of the simulation cost as much as
+    // dozens of simulations: on the way they go on while a step is well worth it.
     if (summary.usable() && !near(summary))
-        summary = stage(15, 0.03, false, 0.2, 0.3);
+        summary = stage(15, toTheEnd ? 1e-3 : 0.03, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
     if (record.noiseKnown && hasPeriods(record))
         fine.substeps = coherentSubsteps(model, record, sections, fine);
-    // The last word has the simulation's own slopes, of which come the standard errors, too. At the noise those of fed
-    // laws lead no further.
+    // The last word has the simulation's own slopes, of which come the standard errors, too. The less is left for them
+    // the better: a step by those of fed laws costs little.
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
-    if (!onlyNoise())
-        summary = stage(20, 5e-7, true, 0.3, 0.5);
+    summary = stage(20, 5e-7, true, 0.3, 0.5);
     if (onlyNoise()) {
         constexpr double noise = 0.5;  // of the cost: along the valleys a step is worth it that tells more
         const LeastSquaresOptions alongTheFloor {

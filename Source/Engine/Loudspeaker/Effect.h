@@ -220,8 +220,8 @@ public:
     virtual double delayedLawAt(const OperatingRange&, const double* parameters, double argument,
                                 double frequency) const;
 
-    /// Name of the base parameter whose value is OperatingRange::scale; for a law, the one that it modifies. Empty:
-    /// none.
+    /// Name of the base parameter that makes OperatingRange::scale (see resize()); for a law, the one that it modifies.
+    /// Empty: none.
     virtual std::string sizedBy() const;
 
     virtual int memorySize(const OperatingRange&) const { return 0; }  ///< extra states

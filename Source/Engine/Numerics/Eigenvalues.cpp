@@ -45,7 +45,7 @@ bool isWithin(const Eigen::MatrixXd& A, double radius)
     if (A.rows() == 0)
         return true;
     constexpr int squarings = 16;
-    constexpr double beyond = 1e100;
+    constexpr double beyond = 1e6;  // farther on rounding errors would tell
     Eigen::MatrixXd power = A / radius, squared;
     balance(power);
     for (int n = 0; n <= squarings; ++n) {

@@ -52,7 +52,7 @@ void Chain::set(const ChainControls& controls)
     const bool bends = mode == Mode::linearize || mode == Mode::audition,
                plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
-        if (atRest) {  // what is switched in finds nothing of before but the coil's heat
+        if (atRest) {  // what is switched in finds nothing of before but heat and charge
             const auto left = engine_->warmth();
             engine_->resetBending();
             engine_->warm(left);

@@ -36,9 +36,10 @@ public:
 
     int latency() const { return engine_->latency(); }  ///< samples; fixed
     void reset();
-    void settle();  ///< as reset(), with the controls as they are now and the coil as warm as it is
+    void settle();  ///< as reset(), with the controls as they are now, coil and amplifier as warm and charged as they
+                    ///< are
     void set(const ChainControls&);
-    /// The coil is as warm as another chain left it that played until now.
+    /// Coil and amplifier are as warm and as charged as another chain left them that played until now.
     void takeOver(const Chain& before);
     void process(const double* in, double* out, std::size_t n);
 

@@ -32,12 +32,17 @@ void CouplingFilter::reset()
     coming_ = 0.0;
 }
 
-void CouplingFilter::charge(const std::array<double, 2>& state)
+std::array<double, 2> CouplingFilter::charge() const
+{
+    return order_ == 2 ? std::array {state_[1], state_[0]} : state_;
+}
+
+void CouplingFilter::charge(const std::array<double, 2>& held)
 {
     reset();
     if (order_ == 0)
         return;
-    state_ = state;
+    state_ = order_ == 2 ? std::array {held[1], held[0]} : std::array {held[0], 0.0};
     foresee();
 }
 

@@ -17,7 +17,9 @@ public:
     CouplingFilter(const AmplifierCoupling&, double sampleRate);
 
     void reset();
-    void charge(const std::array<double, 2>&);  ///< as if new, but charged to this state, V
+    /// What it holds of what was played, V: a constant u fills the first to u. The other is the fast state of order 2.
+    std::array<double, 2> charge() const;
+    void charge(const std::array<double, 2>&);  ///< as if new, but for this
     void take(double u);                        ///< the next sample, V
 
     /// Of the next sample u, what is withheld is coming() + direct() u.

@@ -33,15 +33,17 @@ void DriverEngine::resetBending()
 
 void DriverEngine::resetPlaying()
 {
-    amplifier_.reset();
+    const auto left = bend_.warmth();
     cone_.reset();
-    cone_.warm(bend_.warmth());
+    cone_.warm(left);
+    amplifier_.charge(left.charge);
 }
 
 void DriverEngine::warm(const Warmth& warmth)
 {
     bend_.warm(warmth);
     cone_.warm(warmth);
+    amplifier_.charge(warmth.charge);
 }
 
 /// The cone's part, at the higher rate.

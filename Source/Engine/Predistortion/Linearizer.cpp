@@ -60,8 +60,7 @@ void Linearizer::rest()
 void Linearizer::keep(Warmth& warmth) const
 {
     (follows_ ? cone_ : wish_).inverse.keep(warmth);
-    for (std::size_t k = 0; k < withheld_.order(); ++k)
-        warmth.charge[k] = withheld_.state(k);
+    warmth.charge = withheld_.charge();
 }
 
 void Linearizer::warm(const Warmth& warmth)

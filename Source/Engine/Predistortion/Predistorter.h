@@ -64,7 +64,7 @@ public:
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
     void publish();                                          ///< makes the latest output visible to collectMeters()
 
-    Warmth warmth() const;     ///< of the coil
+    Warmth warmth() const;     ///< of coil and amplifier
     void warm(const Warmth&);  ///< as it is from before
     /// While process() is not called: the amplifier is given these volts, n samples, which charge it and warm the coil.
     void pass(const double* volts, std::size_t n);

@@ -12,7 +12,7 @@ class Effect;
 /// that swings has come to rest. It outlives an engine, since they do.
 struct Warmth {
     double heat = 0.0;                ///< W, running mean of the coil's heat
-    std::array<double, 2> charge {};  ///< V, m of Withheld (AmplifierCoupling.h)
+    std::array<double, 2> charge {};  ///< V, see CouplingFilter::charge()
 
     /// The memory of an effect that is slow (Effect::slow), by which a coil's resistance rises.
     struct Memory {
