@@ -12,12 +12,6 @@ namespace {
 
 // of the resonance: above the first one moves a cone little
 constexpr double firstCorner = 2.5, secondCorner = 12.0;
-// periods of the resonance: a cone left alone has gone farthest long before
-constexpr double swing = 0.75;
-constexpr Eigen::Index coastingPoints = 32;
-// The same of a cone that an amplifier goes on to drive, with what it has withheld.
-constexpr double settling = 3.0;
-constexpr Eigen::Index drivenPoints = 9;
 // of the limit; the rest is for points between those that are looked at
 constexpr double wishShare = 0.96, planShare = 0.992;
 constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
@@ -25,7 +19,7 @@ constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
 constexpr double patience = 0.08;
 // Spacings of what is looked at: in samples, and in periods of the resonance, so that no peak falls between
 constexpr int planSamples = 4, wishSamples = 8;
-constexpr double stepPeriods = 0.02, lookPeriods = 0.03;
+constexpr double stepPeriods = 0.02;
 // periods of the resonance: within a longer tick the cone does what its last look did not see
 constexpr double shortTick = 0.05;
 constexpr double farFromLimit = 0.7;                         // of the limit: more than a look can miss
@@ -36,38 +30,12 @@ constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
 
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
 
-/// From now on, s.
-Eigen::VectorXd coastingTimes(const LinearMotion& motion)
-{
-    const double period = 1.0 / motion.resonance;
-    const auto more = motion.correction.size() > 0 ? drivenPoints : 0;
-    Eigen::VectorXd times(coastingPoints + 1 + more);
-    times.head(coastingPoints + 1) = Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing * period);
-    for (Eigen::Index k = 1; k <= more; ++k)
-        times[coastingPoints + k] = std::lerp(swing, settling, static_cast<double>(k) / drivenPoints) * period;
-    return times;
-}
-
 /// The largest half, quarter, ... of so many samples that is no longer than this many periods; at least one.
 int spacing(int samples, double periods, double f0, double rate)
 {
     while (samples > 1 && samples * f0 > periods * rate)
         samples /= 2;
     return samples;
-}
-
-/// While inputs are known, once a step or more often, then coasting.
-Eigen::VectorXd planTimes(const LinearMotion& motion, double rate, int known, int planStep)
-{
-    const int often = std::clamp(static_cast<int>(std::ceil(planStep * motion.resonance / (lookPeriods * rate))), 1, 4),
-              points = known / planStep * often;
-    const auto coasting = coastingTimes(motion);
-    const auto after = coasting.size() - 1;
-    Eigen::VectorXd times(points + after);
-    for (int k = 0; k < points; ++k)
-        times[k] = planStep * (k + 1.0) / (often * rate);
-    times.tail(after) = coasting.tail(after).array() + known / rate;
-    return times;
 }
 
 /// What a margin leaves of the limit.
@@ -104,19 +72,18 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
       settled_(ticks::in(forgetting(options.coupling), rate_)),
       planStep_(spacing(planSamples, stepPeriods, motion.resonance, rate_)),
       wishStep_(spacing(wishSamples, stepPeriods, motion.resonance, rate_)),
-      looksEvery_(std::max(1, spacing(tick, lookPeriods, motion.resonance, rate_) / wishStep_)),
+      looksEvery_(std::max(1, spacing(tick, LookTimes::spacing, motion.resonance, rate_) / wishStep_)),
       trusts_(tick * motion.resonance <= shortTick * rate_),
       committed_(roundedUp(delay - 0.5, planStep_)),
+      known_(roundedUp(committed_ + latency, planStep_)),
+      times_(motion, rate_, known_, planStep_),
       split_(firstCorner * motion.resonance, secondCorner * motion.resonance, rate_),
       wish_ {Reference(motion, rate_ / wishStep_), Reference(motion, rate_ / wishStep_),
              Reference(motion, rate_ / wishStep_)},
-      coast_(motion, wish_.front().basis(), coastingTimes(motion), 0, 1.0, 0.0),
-      ahead_(motion, basis.size() > 0 ? basis : wish_.front().basis(),
-             planTimes(motion, rate_, roundedUp(committed_ + latency, planStep_), planStep_),
-             roundedUp(committed_ + latency, planStep_) / planStep_, planStep_ / rate_,
-             (committed_ - delay + 0.5) / rate_),
-      shift_(motion, wishStep_ / rate_, tick / rate_, coastingTimes(motion),
-             planTimes(motion, rate_, roundedUp(committed_ + latency, planStep_), planStep_)),
+      coast_(motion, wish_.front().basis(), times_.coasting, 0, 1.0, 0.0),
+      ahead_(motion, basis.size() > 0 ? basis : wish_.front().basis(), times_.plan, known_ / planStep_,
+             planStep_ / rate_, (committed_ - delay + 0.5) / rate_),
+      shift_(motion, wishStep_ / rate_, tick / rate_, times_.coasting, times_.plan),
       uncertainty_(motion.uncertainty),
       sent_(static_cast<std::size_t>(committed_), 0.0),
       displacement_(limitTime, rate_ / tick),

@@ -7,6 +7,7 @@
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/HeatFactor.h"
 #include "Engine/Predistortion/LinearMotion.h"
+#include "Engine/Predistortion/LookTimes.h"
 #include "Engine/Predistortion/PeakHold.h"
 #include "Engine/Predistortion/RealTime.h"
 #include "Engine/Predistortion/Reference.h"
@@ -116,6 +117,8 @@ private:
     int looksEvery_;           ///< steps of the wish
     bool trusts_;              ///< near the limit, too, a cone that gets all of the wish needs no plan
     int committed_;            ///< number of samples on their way to the cone
+    int known_;                ///< samples from now on of which the input is known
+    LookTimes times_;
     Bands split_;
     std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
     Foresight coast_, ahead_;
