@@ -7,6 +7,12 @@
 
 namespace excursion {
 
+double AmplifierCoupling::forgetting() const
+{
+    constexpr double timeConstants = 5.0;
+    return passesConstant() ? 0.0 : timeConstants / (2.0 * std::numbers::pi * corner);
+}
+
 bool AmplifierCoupling::isValid(std::string* reason) const
 {
     if (!(passesConstant() || (corner >= lowest && corner <= highest)))

@@ -18,6 +18,7 @@ struct AmplifierCoupling {
 
     static constexpr double lowest = 0.1, highest = 20.0;  ///< Hz
     bool passesConstant() const { return corner == 0.0; }
+    double forgetting() const;  ///< s, in which it forgets: five time constants; 0 where it withholds nothing
     bool operator==(const AmplifierCoupling&) const = default;
     bool isValid(std::string* reason) const;
 };

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace excursion {
 namespace {
@@ -55,12 +54,9 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     for (auto& sample : period)
         sample *= scale;
 
-    int periods = 4;
-    if (const double corner = options.coupling.corner; corner > 0.0) {  // until the amplifier has forgotten its begin
-        constexpr double forgotten = 5.0;                               // time constants
-        periods += static_cast<int>(
-            std::ceil(forgotten / (2.0 * std::numbers::pi * corner) * options.sampleRate / tones.period));
-    }
+    const int periods = 4
+                        + static_cast<int>(
+                            std::ceil(options.coupling.forgetting() * options.sampleRate / tones.period));
     Speaker plain(model, options), played(model, options);
     Predistorter bend(model, options, controls);
     const CouplingFilter amplifier(options.coupling, options.sampleRate);

@@ -54,14 +54,6 @@ Eigen::MatrixXd sharpened(Eigen::Index steps)
     return filter;
 }
 
-/// s, in which a driver forgets, and the amplifier before it.
-double forgetting(const AmplifierCoupling& coupling)
-{
-    constexpr double forgotten = 5.0;  // time constants
-    return coupling.passesConstant() ? settlingTime
-                                     : std::max(settlingTime, forgotten / (2.0 * std::numbers::pi * coupling.corner));
-}
-
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
 }  // namespace
@@ -69,7 +61,7 @@ int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samp
 Protection::Protection(const LinearMotion& motion, const RealTimeOptions& options, double delay,
                        const Eigen::MatrixXd& basis)
     : rate_(options.sampleRate),
-      settled_(ticks::in(forgetting(options.coupling), rate_)),
+      settled_(ticks::in(std::max(settlingTime, options.coupling.forgetting()), rate_)),
       planStep_(spacing(planSamples, stepPeriods, motion.resonance, rate_)),
       wishStep_(spacing(wishSamples, stepPeriods, motion.resonance, rate_)),
       looksEvery_(std::max(1, spacing(tick, LookTimes::spacing, motion.resonance, rate_) / wishStep_)),
