@@ -52,9 +52,9 @@ Added addTo(const Model& model, const Effect& effect, Record record, const Progr
     result.model = model;
     const auto quickly = tryEffect(result.model, record, effect, {}, progress.part(0.05, 0.5));
     const auto quick = result.model;
-    const bool other = hasSilentNoise(record);
+    const bool other = noiseHoldsDrift(record);
     result.fit = refineByNoise(result.model, record, {}, progress.part(0.5, 0.95));
-    if (other && !hasSilentNoise(record))
+    if (other && !noiseHoldsDrift(record))
         result.before = compare(model, record, {0, false});
     const auto tried = quickly.usable() ? tryCompare(quick, record, {0, false}) : std::nullopt,
                refined = result.fit.usable() ? tryCompare(result.model, record, {0, false}) : std::nullopt;

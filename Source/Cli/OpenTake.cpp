@@ -27,7 +27,7 @@ Record recordFor(const Model& model, const OpenTake& open)
     auto record = open.take.record();
     adapt(record, model);
     if (followsDrift(model, record))
-        useSilentNoise(record);
+        takeDriftOutOfNoise(record);
     return record;
 }
 

@@ -45,14 +45,14 @@ TEST_CASE("What periods drift is no noise to a model that leaves less", "[diagno
     const bench::Loudspeaker linear;
     auto steady = PreparedTake(take(linear, 0.0)).record(), drifting = PreparedTake(take(linear, 0.02)).record();
     const auto model = fitEffects(steady, {}, {});
-    CHECK(hasSilentNoise(steady));  // was not needed
+    CHECK(noiseHoldsDrift(steady));  // was not needed
     CHECK_FALSE(followsDrift(model, steady));
     adapt(drifting, model);
     CHECK(followsDrift(model, drifting));
     const auto before = current(compare(model, drifting));
     CHECK(*before.noiseFloorDb > -40.0);
     CHECK(before.db < -60.0);
-    useSilentNoise(drifting);
+    takeDriftOutOfNoise(drifting);
     CHECK_FALSE(followsDrift(model, drifting));
     const auto after = current(compare(model, drifting));
     CHECK(*after.noiseFloorDb == Approx(*current(compare(model, steady)).noiseFloorDb).margin(1.5));

@@ -61,7 +61,7 @@ TEST_CASE("What drifts is no noise to a model that follows it", "[record]")
         }
     };
     lines(section, 20.0 * truth, 1e3 * truth);
-    useSilentNoise(record);
+    takeDriftOutOfNoise(record);
     lines(section, 0.5 * truth, 2.0 * truth);
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("Where every line is played what drifts is what is smooth in frequency
         for (int k = 3; k <= 401; ++k)
             if (&measured == &drifting)
                 CHECK(record.sections.back().deviation[0][static_cast<std::size_t>(k)] > 5.0 * truth);
-        useSilentNoise(record);
+        takeDriftOutOfNoise(record);
         for (int k = from; k <= to; ++k) {
             CHECK(record.sections.back().deviation[0][static_cast<std::size_t>(k)] > 0.6 * truth);
             CHECK(record.sections.back().deviation[0][static_cast<std::size_t>(k)] < 1.5 * truth);

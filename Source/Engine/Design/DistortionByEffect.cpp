@@ -166,7 +166,7 @@ public:
         for (auto& s : record_.sections) {  // nothing is compared
             s.measured.assign(record_.channels.size(), Spectrum(s.window / 2 + 1, 0.0));
             s.deviation.assign(record_.channels.size(), std::vector<double>(s.window / 2 + 1, 1.0));
-            s.silentDeviation.clear();
+            s.deviationWithoutDrift.clear();
             s.inputVariance.clear();
             s.inputNoise.clear();
         }

@@ -182,8 +182,8 @@ ErrorByChannel errorByChannel(const Comparison& comparison)
 bool followsDrift(const Model& model, const Record& record)
 {
     constexpr double clearly = 1.0;  // dB: a noise of thousands of lines is known far better
-    if (!hasSilentNoise(record) || warms(model))
-        return hasSilentNoise(record);
+    if (!noiseHoldsDrift(record) || warms(model))
+        return noiseHoldsDrift(record);
     const auto reached = tryCompare(model, record, {0, false});
     return reached && std::any_of(reached->channels.begin(), reached->channels.end(), [](const ChannelComparison& c) {
                return c.total.noiseFloorDb && c.total.db < *c.total.noiseFloorDb - clearly;

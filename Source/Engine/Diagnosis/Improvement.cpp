@@ -229,8 +229,8 @@ Improvement::Together Improvement::together(Record& record, const Progress& prog
     if (whole.votes.empty()
         || (oneIsKnown && whole.votes.size() == 1 && whole.votes.begin()->first == named.front().effect))
         return {};
-    if (whole.silentNoise) {
-        useSilentNoise(record);
+    if (whole.followsDrift) {
+        takeDriftOutOfNoise(record);
         base.comparison = compare(base.model, record);
     }
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
@@ -279,7 +279,7 @@ void Improvement::use(Data data, std::size_t kept, const Progress& silent)
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
     rungs.resize(kept);
     if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
-        now && before && hasSilentNoise(*now) != hasSilentNoise(*before))
+        now && before && noiseHoldsDrift(*now) != noiseHoldsDrift(*before))
         for (auto& rung : rungs)
             if (auto comparison = tryCompare(rung.model, *now, {rung.fit.substeps, true}, silent)) {
                 rung.comparison = std::move(*comparison);

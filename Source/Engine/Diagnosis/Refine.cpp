@@ -185,11 +185,11 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
 FitSummary refineByNoise(Model& model, Record& record, const FitOptions& options, const Progress& progress)
 {
     if (warms(model))
-        useSilentNoise(record);
+        takeDriftOutOfNoise(record);
     const auto summary = refine(model, record, options, progress.part(0.0, 0.6));
     if (!summary.usable() || !followsDrift(model, record))
         return summary;
-    useSilentNoise(record);
+    takeDriftOutOfNoise(record);
     auto again = model;
     auto next = refine(again, record, options, progress.part(0.6, 1.0));
     if (!next.usable())

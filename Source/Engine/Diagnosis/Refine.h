@@ -16,7 +16,7 @@ FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheE
 /// simulation, is fitted by simulation in the end. If not, FitSummary::substeps is 0.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 
-/// refine(), against the noise of the silent lines once the model follows what the periods drift (followsDrift()): such
+/// refine(), against the noise without drift once the model follows what the periods drift (followsDrift()): such
 /// a model is fitted again, or stays if that fails. The record may have another noise then.
 FitSummary refineByNoise(Model&, Record&, const FitOptions&, const Progress& = {});
 

@@ -66,7 +66,7 @@ Candidate refined(Whole whole, const Record& record, WholeSearch& search, const 
     search.chooseResiduals(found.whole.model);
     if (search.left(found.whole.model).isNoise())  // what is not needed would only hold up the refinement
         search.takeOut(found.whole.model, false, isNeeded, found.tried);
-    if (isNear(found.whole, record) && warms(found.whole.model) && hasSilentNoise(record))
+    if (isNear(found.whole, record) && warms(found.whole.model) && noiseHoldsDrift(record))
         return found;  // what warms is refined by another noise (see fitWhole)
     found.whole.fit = refine(found.whole.model, record, options, progress);
     return found;
@@ -182,18 +182,18 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         return found.whole;
     if (!followsDrift(found.whole.model, record))
         return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));
-    auto silent = record;
-    useSilentNoise(silent);
-    WholeSearch closer(base, silent, options, progress);
+    auto driftless = record;
+    takeDriftOutOfNoise(driftless);
+    WholeSearch closer(base, driftless, options, progress);
     found.tried.clear();
     auto closely = found.whole.model;
-    const auto run = refine(closely, silent, options, progress.part(0.7, 0.8));
+    const auto run = refine(closely, driftless, options, progress.part(0.7, 0.8));
     if (!run.usable())
         return found.whole;
     found.whole.model = std::move(closely);
     found.whole.fit = run;
-    auto whole = completed(std::move(found), silent, closer, options, progress.part(0.8, 1.0));
-    whole.silentNoise = true;
+    auto whole = completed(std::move(found), driftless, closer, options, progress.part(0.8, 1.0));
+    whole.followsDrift = true;
     return whole;
 }
 

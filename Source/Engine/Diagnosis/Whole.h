@@ -16,8 +16,8 @@ struct Whole {
     double coupling = 0.0;
     Model model;     ///< the base and the needed effects, refined
     FitSummary fit;  ///< not usable if nothing was found
-    /// the noise is that of the silent lines (useSilentNoise()): the model follows what the periods drift
-    bool silentNoise = false;
+    /// the noise is that without drift (takeDriftOutOfNoise()): the model follows what the periods drift
+    bool followsDrift = false;
     /// of the model, on each effect that the base does not have; or of a fuller one that missed it by 6 dB or more
     std::map<std::string, Vote> votes;
 };

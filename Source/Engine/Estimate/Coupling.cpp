@@ -25,7 +25,7 @@ void takeOffHighPass(Record& record, std::size_t channel, double corner)
         for (std::size_t k = 1; k < measured.size(); ++k) {
             const auto inverse = inverseAt(record, section, k, corner);
             measured[k] *= inverse;
-            for (auto* deviation : {&section.deviation, &section.silentDeviation})
+            for (auto* deviation : {&section.deviation, &section.deviationWithoutDrift})
                 if (!deviation->empty())
                     (*deviation)[channel][k] *= std::abs(inverse);
             if (!section.inputNoise.empty())

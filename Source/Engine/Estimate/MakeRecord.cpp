@@ -50,7 +50,7 @@ void sampleAnew(Section& section, std::size_t length)
     section.window = length;
     for (auto& measured : section.measured)
         rescaleLines(measured, window, length);
-    for (auto* deviations : {&section.deviation, &section.silentDeviation})
+    for (auto* deviations : {&section.deviation, &section.deviationWithoutDrift})
         for (auto& deviation : *deviations)
             rescaleLines(deviation, window, length);
     section.inputVariance.resize(std::min(length / 2 + 1, section.inputVariance.size()));
@@ -146,7 +146,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
                 section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
                 if (steady != variance)
-                    section.silentDeviation.push_back(
+                    section.deviationWithoutDrift.push_back(
                         deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
             if (simulated != section.window)

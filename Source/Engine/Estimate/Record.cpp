@@ -43,17 +43,17 @@ std::vector<double> Record::drive(const Section& section, std::size_t atLeast) c
     return samples;
 }
 
-void useSilentNoise(Record& record)
+void takeDriftOutOfNoise(Record& record)
 {
     for (auto& section : record.sections)
-        if (!section.silentDeviation.empty())
-            section.deviation = std::exchange(section.silentDeviation, {});
+        if (!section.deviationWithoutDrift.empty())
+            section.deviation = std::exchange(section.deviationWithoutDrift, {});
 }
 
-bool hasSilentNoise(const Record& record)
+bool noiseHoldsDrift(const Record& record)
 {
     return std::any_of(record.sections.begin(), record.sections.end(),
-                       [](const Section& s) { return !s.silentDeviation.empty(); });
+                       [](const Section& s) { return !s.deviationWithoutDrift.empty(); });
 }
 
 bool hasPeriods(const Record& record)

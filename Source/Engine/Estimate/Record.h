@@ -30,7 +30,7 @@ struct Section {
     /// [channel][line], the same without what drifts with what was played: on a played line the noise of the silent
     /// lines around it, or of what is not smooth (withoutDrift()); empty where that is no other noise, and once it is
     /// in use
-    std::vector<std::vector<double>> silentDeviation;
+    std::vector<std::vector<double>> deviationWithoutDrift;
     /// [line], E|noise|^2 of the input's DFT; empty when unknown
     std::vector<double> inputVariance;
     /// [channel][line], what noise of the input of one standard deviation makes of a channel. It is the same noise in
@@ -70,13 +70,13 @@ struct Record {
     }
 };
 
-/// Takes what the periods drift out of the noise (Section::silentDeviation), for models that follow it: a coil that
-/// warms scatters the played lines, and by far more than any sensor. Nothing happens where the take does not tell the
-/// two apart, or the second time.
-void useSilentNoise(Record&);
+/// Takes what the periods drift out of the noise (Section::deviationWithoutDrift), for models that follow it: a coil
+/// that warms scatters the played lines, and by far more than any sensor. Nothing happens where the take does not tell
+/// the two apart, or the second time.
+void takeDriftOutOfNoise(Record&);
 
 /// Whether a record has another noise for models that follow the drift than the one in use.
-bool hasSilentNoise(const Record&);
+bool noiseHoldsDrift(const Record&);
 
 /// Whether the sections of a record are periods, compared as a whole.
 bool hasPeriods(const Record&);

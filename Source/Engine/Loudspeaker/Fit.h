@@ -62,7 +62,7 @@ bool warms(const Model&);
 /// Makes a record ready for models near this linear one: periodic sections start settled (the lead-in lasts until the
 /// resonance has decayed by 110 dB), and the input sensor's noise counts as noise of the outputs,
 ///     sigma^2 += |G|^2 sigma_u^2  on the lines that are played.
-/// What a model that warms follows is no noise to it (useSilentNoise()).
+/// What a model that warms follows is no noise to it (takeDriftOutOfNoise()).
 void adapt(Record&, const Model&);
 
 /// Steps per sample for simulating this model on this record; tolerance as FitOptions::simulationTolerance.

@@ -103,7 +103,7 @@ void adapt(Record& record, const Model& model)
         section.inputNoise.assign(record.channels.size(), std::vector<std::complex<double>>(U.size()));
         for (std::size_t n = 0; n < played.size(); ++n) {
             const double input = std::sqrt(section.inputVariance[played[n]]);
-            for (auto* deviation : {&section.deviation, &section.silentDeviation})
+            for (auto* deviation : {&section.deviation, &section.deviationWithoutDrift})
                 for (std::size_t c = 0; c < deviation->size(); ++c) {
                     auto& own = (*deviation)[c][played[n]];
                     own = std::hypot(own, std::abs(responses[c].value[n]) * input);
@@ -115,7 +115,7 @@ void adapt(Record& record, const Model& model)
     }
     record.leadIn = settlingTime(model, record);
     if (warms(model))
-        useSilentNoise(record);
+        takeDriftOutOfNoise(record);
 }
 
 OperatingRange visitedRange(const Model& model, const Record& record, int degree)

@@ -39,7 +39,7 @@ Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vect
     auto record = take.record();
     adapt(record, model);
     if (followsDrift(model, record))
-        useSilentNoise(record);
+        takeDriftOutOfNoise(record);
     result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
     result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));
     result.beyond = visitedRange(model, record).displacement > farther * measuredDisplacement(model);
