@@ -38,7 +38,7 @@ RehearsedBox::RehearsedBox(const BlackBox& known, const Region& where, const Res
 
 BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sampleRate,
                                            const PredistortionControls& controls, const AmplifierCoupling& coupling)
-    : toModel_(sampleRate, model.box.linear.sampleRate),
+    : toModel_(sampleRate, model.box.linear.sampleRate, model.box.stimulus.highest()),
       back_(model.box.linear.sampleRate, sampleRate),
       linearizer_(model.box, model.region, model.rest, model.rehearsal.design),
       bound_(model.box.stimulus.peak + largestCorrection(model)),

@@ -31,11 +31,11 @@ struct RehearsedBox {
 /// linear part:
 ///     u -> TargetFilter -> BoxProtection -> delay ------------------------------------------+-> out
 ///                              |-> to the model's rate -> BlackBoxLinearizer -> and back ->-+
-/// The signal itself is delayed and not filtered, at any rate. Only the correction is converted between the rates, so
-/// it is band-limited to the lower of the two. The output never exceeds the peak of the fit's input plus the largest
-/// correction that the rehearsal at that level asked for. The excursion limit applies only to a model of the excursion,
-/// the power limit only if the coil's resistance is given. The amount goes to 1 where the excursion comes near its
-/// limit, so that a lower amount cannot weaken the protection.
+/// The signal itself is delayed and not filtered, at any rate. The model hears it to the highest frequency of its fit.
+/// The correction is converted between the rates, so it is band-limited to the lower of the two. The output never
+/// exceeds the peak of the fit's input plus the largest correction that the rehearsal at that level asked for. The
+/// excursion limit applies only to a model of the excursion, the power limit only if the coil's resistance is given.
+/// The amount goes to 1 where the excursion comes near its limit, so that a lower amount cannot weaken the protection.
 ///
 /// Everything but the construction is for the audio thread: no allocation, no lock, no exception. Blocks may have any
 /// length, and the output does not depend on how a signal is cut into blocks.

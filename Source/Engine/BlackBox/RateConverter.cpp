@@ -13,7 +13,8 @@
 namespace excursion {
 namespace {
 
-constexpr double zeroCrossings = 32.0, beta = 8.96, edge = 0.455;  // edge: of the lower rate
+constexpr double flat = 0.41, stop = 0.5;              // of the lower rate
+constexpr double beta = 8.96, reachTimesWidth = 2.88;  // for -90 dB; width: of the transition, cycles a sample
 
 /// Of first kind and order zero.
 double bessel(double x)
@@ -28,7 +29,7 @@ double bessel(double x)
 
 }  // namespace
 
-RateConverter::RateConverter(double from, double to)
+RateConverter::RateConverter(double from, double to, double highest)
     : from_(std::llround(1000.0 * from)), to_(std::llround(1000.0 * to))
 {
     if (!(from_ > 0 && to_ > 0 && from <= 16.0 * to && to <= 16.0 * from))
@@ -37,10 +38,17 @@ RateConverter::RateConverter(double from, double to)
     const auto common = std::gcd(from_, to_);
     from_ /= common;
     to_ /= common;
-    if (from_ == to_)
+    // Cycles an input sample.
+    const double share = std::min(1.0, to / from), known = highest / from;
+    const bool knowsLess = 2.0 * known < stop * share;
+    const double first = knowsLess ? known : flat * share, last = knowsLess ? 2.0 * known : stop * share,
+                 cut = 0.5 * (first + last);
+    unchanged_ = from_ == to_ && !knowsLess;
+    if (unchanged_) {
+        reset();
         return;
-    const double share = std::min(1.0, to / from), cut = edge * share;  // cycles an input sample
-    reach_ = static_cast<int>(std::ceil(zeroCrossings / share));
+    }
+    reach_ = static_cast<int>(std::ceil(reachTimesWidth / (last - first) - 1e-9));
     const int taps = 2 * reach_;
     history_.assign(2 * static_cast<std::size_t>(taps), 0.0);
     for (int phase = 0; phase <= phases; ++phase) {
@@ -67,14 +75,14 @@ void RateConverter::reset()
     at_ = 0;
     ahead_ = -1;
     fraction_ = 0;
-    if (from_ == to_)
+    if (unchanged_)
         history_.assign(1, 0.0);
 }
 
 void RateConverter::push(double sample)
 {
     ++ahead_;
-    if (from_ == to_) {
+    if (unchanged_) {
         history_[0] = sample;
         return;
     }
@@ -87,7 +95,7 @@ bool RateConverter::pull(double& out)
 {
     if (ahead_ < reach_)
         return false;
-    if (from_ == to_) {
+    if (unchanged_) {
         out = history_[0];
         ahead_ = -1;
         return true;

@@ -22,7 +22,7 @@ BlackBox linearOf(const BlackBox& box)
 
 RegionLimiter::RegionLimiter(const BlackBox& box, const Region& region, double sampleRate)
     : linear_(linearOf(box), region),
-      converter_(sampleRate, box.linear.sampleRate),
+      converter_(sampleRate, box.linear.sampleRate, box.stimulus.highest()),
       peak_(box.stimulus.peak),
       decay_(std::exp(-1.0 / (releaseTime * sampleRate))),
       x_(linear_.states()),
