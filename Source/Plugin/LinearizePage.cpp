@@ -2,12 +2,8 @@
 #include "Plugin/LinearizePage.h"
 
 #include "Engine/Document/Engineering.h"
-#include "Engine/Error.h"
-#include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Linear/Response.h"
 #include "Plots/Plots.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,18 +14,16 @@ LinearizePage::LinearizePage(Window& window)
     : Page(window),
       processor_(window.processor()),
       mode_(processor_.parameters().mode(), &window.history()),
-      couplingOrder_(processor_.parameters().couplingOrder(), &window.history()),
+      dials_(processor_.parameters(), &window.history()),
       target_(window),
       meters_(window)
 {
     name_.setFont(juce::Font(19.0f));
-    forecastWords_.setFont(juce::Font(14.0f));
     facts_.setFont(juce::Font(14.0f));
     facts_.setBorderSize({1, 0, 1, 0});
     facts_.setJustificationType(juce::Justification::topLeft);
     facts_.setTitle("What the model is");
     name_.setBorderSize({1, 0, 1, 0});
-    distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     drivers_.setTextWhenNothingSelected("Factory drivers");
     for (std::size_t k = 0; k < factoryDrivers().size(); ++k)
         drivers_.addItem(factoryDrivers()[k].title, static_cast<int>(k) + 1);
@@ -77,29 +71,15 @@ LinearizePage::LinearizePage(Window& window)
     load_.setTooltip("Or drop the model's file anywhere on this window");
     const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
     laws_.told = tell;
-    distortion_.told = tell;
+    distortion_.picture().told = tell;
     target_.told = tell;
     target_.reshaped = [this] { resized(); };
     meters_.reshaped = [this] { resized(); };
     meters_.told = tell;
     add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &save_, &adapt_});
-    for (auto* number : processor_.parameters().numbers()) {
-        dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
-        dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
-        dials_.back().first->setFont(juce::Font(14.0f));
-        add({dials_.back().first.get(), &dials_.back().second->slider()});
-        if (number->paramID == "coupling") {
-            dials_.back().second->slider().setTooltip(
-                "Where the high-pass of sound card and amplifier begins: with it the correction reckons, and so does "
-                "the limit of the excursion");
-            add({&couplingOrder_.box()});
-        }
-    }
-    for (auto* effect : processor_.parameters().effects()) {
-        switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
-        add({&switches_.back()->button()});
-    }
-    add({&meters_, &facts_, &target_, &laws_, &distortion_, &forecastWords_});
+    for (auto* part : dials_.parts())
+        add({part});
+    add({&meters_, &facts_, &target_, &laws_, &distortion_.picture(), &distortion_.words()});
     showModel(processor_.anyModel());
 }
 
@@ -108,18 +88,8 @@ void LinearizePage::showModel(const AnyModel& model)
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
     showFactory(0);
-    const bool coil = hasCoil(model), moves = givesExcursion(model);
-    const auto numbers = processor_.parameters().numbers();
-    for (std::size_t k = 0; k < dials_.size(); ++k) {
-        const auto& id = numbers[k]->paramID;
-        const bool shown = id == "displacementLimit" ? limitsExcursion(model)
-                           : id == "margin"          ? moves
-                           : id == "powerLimit"      ? coil
-                           : id == "coilResistance"  ? box_ && coil
-                                                     : true;
-        dials_[k].first->setVisible(shown);
-        dials_[k].second->slider().setVisible(shown);
-    }
+    dials_.showModel(model);
+    distortion_.showModel(model);
     facts_.setVisible(box_ || followed_ == processor_.modelVersion());
     adapt_.setVisible(!box_);
     save_.setVisible(!box_);
@@ -141,7 +111,7 @@ void LinearizePage::showFactory(int id)
 void LinearizePage::turnOn(double fullScale)
 {
     if (fullScale > 0.0)  // first, as the limits that come with the mode are told in volts
-        dials_.front().second->enter(fullScale);
+        dials_.enterFullScale(fullScale);
     mode_.follow();
     if (processor_.parameters().settings().mode == Mode::bypass)
         mode_.box().setSelectedItemIndex(static_cast<int>(Mode::linearize), juce::sendNotificationSync);
@@ -159,10 +129,6 @@ void LinearizePage::showDriver(const Model& model)
     for (auto& plot : plots)
         plot.key = false;
     laws_.show(std::move(plots));
-    distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
-    // A switch of an effect that the model has not would do nothing.
-    for (std::size_t k = 0; k < switches_.size(); ++k)
-        switches_[k]->button().setVisible(model.has(catalogue()[k]->id()));
 }
 
 void LinearizePage::showBox(const PlayedBox& played)
@@ -170,9 +136,6 @@ void LinearizePage::showBox(const PlayedBox& played)
     const auto& box = played.box;
     name_.setText(box.name.empty() ? juce::String("A model without a name") : words(box.name),
                   juce::dontSendNotification);
-    for (auto& one : switches_)
-        one->button().setVisible(false);
-    asked_ = {};
     showFacts();
     Plot response;
     response.title = "Linear part, where it was fitted";
@@ -187,17 +150,6 @@ void LinearizePage::showBox(const PlayedBox& played)
         level.push_back(20.0 * std::log10(std::abs(gain(0, 0))));
     response.series = {{"linear part", Role::model, frequency, level, {}, {}, Series::Shape::line, 0}};
     laws_.show({response});
-    if (!played.rehearsal) {
-        distortion_.getProperties().set("empty", words(played.refusal));
-        distortion_.show({});
-        forecastWords_.setText("It plays; linearizing it would not help.", juce::dontSendNotification);
-        return;
-    }
-    const auto& gain = *played.rehearsal;
-    showDistortion(gain.frequency, gain.before, gain.after, "Rehearsed distortion, as loud as it was fitted");
-    forecastWords_.setText("Distortion " + words(decibels(gain.beforeDb)) + ", linearized "
-                               + words(decibels(gain.afterDb)) + ": a gain of " + words(decibels(gain.gainDb())),
-                           juce::dontSendNotification);
 }
 
 /// What the model is, and what is protected, which depends on what a person knows of the coil.
@@ -215,26 +167,6 @@ void LinearizePage::showFacts()
                    juce::dontSendNotification);
 }
 
-void LinearizePage::showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
-                                   const std::vector<double>& after, const std::string& title)
-{
-    Plot plot;
-    plot.title = title;
-    plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
-    const double least = *std::min_element(after.begin(), after.end()),
-                 most = std::max(*std::max_element(before.begin(), before.end()),
-                                 *std::max_element(after.begin(), after.end()));
-    plot.y = {"over the signal",
-              "dB",
-              false,
-              std::max(-180.0, 20.0 * std::floor(least / 20.0)),
-              std::max(0.0, 20.0 * std::ceil(most / 20.0)),
-              {}};
-    plot.series = {{"as it is", Role::before, frequency, before, {}, {}, Series::Shape::line, 0},
-                   {"linearized", Role::after, frequency, after, {}, {}, Series::Shape::line, 0}};
-    distortion_.show(std::move(plot));
-}
-
 void LinearizePage::choose()
 {
     chooser_ = std::make_unique<juce::FileChooser>("Load a model", juce::File(), "*.json");
@@ -244,41 +176,6 @@ void LinearizePage::choose()
                                   return;
                               window_.useFile(chosen.getResult());
                           });
-}
-
-/// What is to be expected at 0 dBFS, with the effects that are switched on.
-void LinearizePage::showForecast()
-{
-    const auto recipe = processor_.parameters().recipe();
-    if (box_) {
-        forecast_.collect();  // of a driver before
-        return;
-    }
-    if (targetPictured())
-        return;
-    if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
-        asked_ = std::move(question);
-        const auto loaded = processor_.model();
-        forecast_.ask([model = withoutOff(loaded, recipe), controls = controlsOf(recipe, loaded),
-                       volts = recipe.fullScale,
-                       realTime = RealTimeOptions {.coupling = couplingOf(recipe)}](const Progress& progress) {
-            try {
-                return std::optional(predictDistortion(model, controls, volts, realTime, progress));
-            } catch (const Error& error) {
-                if (error.kind() == Error::Kind::cancelled)
-                    throw;
-                return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
-            }
-        });
-    }
-    const auto answer = forecast_.collect().value_or(std::nullopt);
-    if (!answer)
-        return;
-    showDistortion(answer->frequency, answer->before, answer->after, "Predicted distortion at 0 dBFS");
-    forecastWords_.setText("Distortion " + words(decibels(answer->beforeDb)) + ", linearized "
-                               + words(decibels(answer->afterDb)) + ", at "
-                               + words(engineering(answer->displacement, "m", 2)) + " peak excursion",
-                           juce::dontSendNotification);
 }
 
 /// A model that has followed the take takes over, as a step that can be taken back.
@@ -299,20 +196,12 @@ void LinearizePage::useAdapted()
     window_.tell(words(adapted->words), false);
 }
 
-/// Whether there is a high-pass, which has an order.
-bool LinearizePage::statesAmplifier() const { return !couplingOf(processor_.parameters().settings()).passesConstant(); }
-
 /// What a host has moved.
 void LinearizePage::follow()
 {
     mode_.follow();
-    couplingOrder_.follow();
-    if (couplingOrder_.box().isVisible() != statesAmplifier())
+    if (dials_.follow())
         resized();
-    for (auto& dial : dials_)
-        dial.second->follow();
-    for (auto& one : switches_)
-        one->follow();
     // A list that has been opened is without a choice until one is made; its change may still be on the way.
     if (drivers_.isDismissed())
         drivers_.setSelectedId(shownDriver_, juce::dontSendNotification);
@@ -335,7 +224,8 @@ void LinearizePage::tick()
     if (box_)
         showFacts();
     target_.tick();
-    showForecast();
+    if (!box_ && !target_.pictured())
+        distortion_.followDriver(processor_);
 }
 
 void LinearizePage::resized()
@@ -353,21 +243,9 @@ void LinearizePage::resized()
     area.removeFromTop(8);
     auto left = area.removeFromLeft(juce::jmax(376, area.getWidth() * 2 / 5));
     area.removeFromLeft(12);
-    std::vector<juce::ToggleButton*> shown;
-    for (auto& one : switches_)
-        if (one->button().isVisible())
-            shown.push_back(&one->button());
     // Where the room is short, lines stand closer.
-    const auto titled = [width = left.getWidth() / 2](const juce::ToggleButton& one) {
-        return juce::Font(14.0f).getStringWidth(one.getButtonText()) + 28 <= width;
-    };
-    int lines = static_cast<int>(
-        std::count_if(dials_.begin(), dials_.end(), [](const auto& dial) { return dial.first->isVisible(); }));
-    for (std::size_t k = 0; k < shown.size(); ++lines)
-        k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
     const int told = facts_.isVisible() ? 116 : 0, rest = 28 + 4 * 8 + meters_.wantedHeight() + told,
-              row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
-    couplingOrder_.box().setVisible(statesAmplifier());
+              row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, dials_.lines(left.getWidth())));
     auto modes = left.removeFromTop(28);
     if (!box_) {
         for (auto* button : {&adapt_, &save_}) {
@@ -377,41 +255,22 @@ void LinearizePage::resized()
     }
     mode_.box().setBounds(modes);
     left.removeFromTop(8);
-    const auto numbers = processor_.parameters().numbers();
-    for (std::size_t k = 0; k < dials_.size(); ++k) {
-        auto& dial = dials_[k];
-        if (!dial.first->isVisible())
-            continue;
-        auto line = left.removeFromTop(row);
-        dial.first->setBounds(line.removeFromLeft(130));
-        if (numbers[k]->paramID == "coupling" && couplingOrder_.box().isVisible())
-            couplingOrder_.box().setBounds(line.removeFromRight(100).reduced(0, 1));
-        dial.second->slider().setBounds(line);
-    }
-    left.removeFromTop(8);
-    for (std::size_t k = 0; k < shown.size();) {
-        auto line = left.removeFromTop(juce::jmin(row, 26));
-        // Two beside each other where both titles have room.
-        const bool two = k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]);
-        shown[k++]->setBounds(two ? line.removeFromLeft(line.getWidth() / 2) : line);
-        if (two)
-            shown[k++]->setBounds(line);
-    }
+    dials_.place(left, row);
     left.removeFromTop(8);
     meters_.setBounds(left.removeFromTop(meters_.wantedHeight()));
     left.removeFromTop(8);
     facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
-    for (auto* part : std::initializer_list<juce::Component*> {&laws_, &distortion_, &forecastWords_})
-        part->setVisible(!targetPictured());
-    if (targetPictured()) {
+    for (auto* part : std::initializer_list<juce::Component*> {&laws_, &distortion_.picture(), &distortion_.words()})
+        part->setVisible(!target_.pictured());
+    if (target_.pictured()) {
         target_.setBounds(area);
         target_.resized();
         return;
     }
     target_.setBounds(area.removeFromTop(target_.head()));
     target_.resized();
-    forecastWords_.setBounds(area.removeFromBottom(24));
-    distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
+    distortion_.words().setBounds(area.removeFromBottom(24));
+    distortion_.picture().setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
     laws_.setBounds(area);
 }
 

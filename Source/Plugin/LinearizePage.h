@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Plugin/Dials.h"
-#include "Engine/Predistortion/PredictedDistortion.h"
-#include "Plugin/Forecast.h"
+#include "Plugin/ExpectedDistortion.h"
 #include "Plugin/LimitMeters.h"
+#include "Plugin/ModelDials.h"
 #include "Plugin/Page.h"
 #include "Plugin/PlotGrid.h"
 #include "Plugin/TargetPanel.h"
@@ -37,17 +37,12 @@ private:
     void showFactory(int id);
     void showBox(const PlayedBox&);
     void showFacts();
-    void showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
-                        const std::vector<double>& after, const std::string& title);
     void choose();
     void follow();
-    void showForecast();
     void useAdapted();
-    bool statesAmplifier() const;
-    bool targetPictured() const { return target_.pictured(); }
 
     Processor& processor_;
-    juce::Label name_, forecastWords_, facts_;
+    juce::Label name_, facts_;
     /// A list of which the entry that was chosen last can be chosen again.
     struct Menu : juce::ComboBox {
         void showPopup() override
@@ -71,18 +66,13 @@ private:
     int shownDriver_ = 0;  ///< in the list; 0: none
     juce::String shownRecipe_;
     juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"}, save_ {"Save..."};
-    ChoiceBox mode_, couplingOrder_;
-    /// each behind its title
-    std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;
-    std::vector<std::unique_ptr<OnOffButton>> switches_;
+    ChoiceBox mode_;
+    ModelDials dials_;
     PlotGrid laws_ {"Laws of the model"};
-    PlotView distortion_;
+    ExpectedDistortion distortion_;
     TargetPanel target_;
     LimitMeters meters_;
-    LoadedBoxPointer box_;  ///< null: a driver is shown
-    Forecast<std::optional<PredictedDistortion>> forecast_;
-    /// version of the model, and the recipe, that the forecast is of
-    std::pair<std::uint64_t, std::string> asked_;
+    LoadedBoxPointer box_;        ///< null: a driver is shown
     std::uint64_t followed_ = 0;  ///< version of a model that has followed its take, which the facts tell of
     std::unique_ptr<juce::FileChooser> chooser_;
 };
