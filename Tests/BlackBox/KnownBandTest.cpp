@@ -65,9 +65,10 @@ TEST_CASE("Hiss above what a fit has played does not turn a black box down", "[p
     const auto music = playedAs(stimulus, rate, 16384, 3);
     std::vector<double> quiet, hissing;
     for (std::size_t n = 0; n < music.size(); ++n) {
-        quiet.push_back(0.5 * music[n]);
-        hissing.push_back(0.5 * music[n]
-                          + 0.3 * std::sin(2.0 * std::numbers::pi * 19000.0 * static_cast<double>(n) / rate));
+        const double fade = std::min(1.0, static_cast<double>(n) / 4000.0);
+        quiet.push_back(0.5 * fade * music[n]);
+        hissing.push_back(0.5 * fade * music[n]
+                          + 0.3 * fade * std::sin(2.0 * std::numbers::pi * 19000.0 * static_cast<double>(n) / rate));
     }
     CHECK(leastFactor(box, quiet) == 1.0);
     CHECK(leastFactor(box, hissing) == 1.0);
