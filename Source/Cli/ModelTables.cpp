@@ -7,6 +7,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Loudspeaker/Laws.h"
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Loudspeaker/Summary.h"
 
 #include <algorithm>
@@ -58,7 +59,7 @@ void printParameters(const Model& model, Terminal& terminal)
         else if (!component.effect->law())
             addRows(rows, component.parameters);
     }
-    addRows(rows, model.path.parameters);
+    addRows(rows, toldOfPath(model));
     const bool held = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.back().empty(); });
     terminal.table({"parameter", "value", "std error", "unit", held ? "remark" : ""}, rows);
     std::vector<LawTable> tables;

@@ -45,19 +45,30 @@ bool isNear(const Waypoint& one, const Waypoint& other, double share)
 }
 
 /// Fits the others and puts the one in place of the model that leaves clearly less: a little less may be what a wrong
-/// shape takes of what else is missing. One that does not come near the model in a brief search has the wrong start.
+/// shape takes of what else is missing. One that does not come near the model in a brief search has the wrong start,
+/// and one that comes to where another has come leads no farther: its law has stayed at rest.
 FitSummary WholeSearch::orBetter(Model& model, FitSummary summary, std::vector<Model> others,
                                  const Progress& progress) const
 {
-    constexpr double near = -2.0;  // dB
+    constexpr double near = -2.0, same = 1e-4;  // dB; share of what is left
+    std::vector<double> reached;                // by brief searches
     auto least = summary.usable() && !others.empty() ? left(model) : Left {};
     for (std::size_t n = 0; n < others.size(); ++n) {
         const auto count = static_cast<double>(others.size()), done = static_cast<double>(n);
         const auto part = progress.part(done / count, (done + 1.0) / count);
-        const auto gains = [&](double enough) { return !summary.usable() || lost(least, left(others[n])) > enough; };
-        if (!fit(others[n], brief, part.part(0.0, 0.4)).usable() || !gains(near))
+        const auto gains = [&](const Left& then, double enough) {
+            return !summary.usable() || lost(least, then) > enough;
+        };
+        if (!fit(others[n], brief, part.part(0.0, 0.4)).usable())
             continue;
-        if (const auto run = fit(others[n], full, part.part(0.4, 1.0)); run.usable() && gains(worthAStart)) {
+        const auto then = left(others[n]);
+        if (!gains(then, near) || std::any_of(reached.begin(), reached.end(), [&](double chi) {
+                return std::abs(chi - then.chiSquaredPerValue) <= same * chi;
+            }))
+            continue;
+        reached.push_back(then.chiSquaredPerValue);
+        if (const auto run = fit(others[n], full, part.part(0.4, 1.0));
+            run.usable() && gains(left(others[n]), worthAStart)) {
             model = std::move(others[n]);
             least = left(model);
             summary = run;

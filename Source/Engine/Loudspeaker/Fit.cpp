@@ -7,6 +7,7 @@
 #include "Engine/Loudspeaker/KeptSlopes.h"
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/SearchCoordinates.h"
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Validity.h"
 
@@ -235,9 +236,11 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     return summary;
 }
 
-/// Without a current only laws tell the coil's damping from the suspension's.
+/// Frees what a record can tell, and holds what it cannot.
 void holdUntold(Model& model, const Record& record)
 {
+    freeLags(model, record);
+    // Without a current only laws tell the coil's damping from the suspension's.
     const auto& seen = record.channels;
     const bool current = std::find(seen.begin(), seen.end(), Quantity::current) != seen.end();
     if (model.electrical() && !current)

@@ -245,23 +245,32 @@ std::vector<double> settledSteady(const Rate& rate, std::size_t size, std::size_
 }
 
 /// Any memory that repeats: two periods from rest, and then on as each state has come from the first to the second.
+/// @param fastest  1/s, of its rates
 template <class Rate>
 std::vector<double> settledAnyhow(const Rate& rate, std::size_t size, std::size_t N, std::size_t begin,
-                                  double sampleRate)
+                                  double sampleRate, double fastest)
 {
-    constexpr int parts = 2;  // steps a sample
-    const double h = 1.0 / (parts * sampleRate);
+    // Where the memory is slow a step takes some samples: the motion is known in its middle then.
+    constexpr double share = 0.3;  // of the fastest rate's time
+    constexpr std::size_t mostSamples = 4;
+    std::size_t samples = 1;
+    while (samples < mostSamples && N % (2 * samples) == 0
+           && 2.0 * static_cast<double>(samples) * fastest < share * sampleRate)
+        samples *= 2;
+    const int parts = samples > 1 ? 1 : 2;  // steps a sample
+    const auto across = static_cast<double>(samples) / parts;
+    const double h = across / sampleRate;
     std::vector<double> m(size, 0.0), k1(size);
     RungeKutta<double> method(size);
     std::vector<double> once;  // after the first period
-    for (std::size_t n = 0; n < 2 * N; ++n) {
+    for (std::size_t n = 0; n < 2 * N; n += samples) {
         if (n == N)
             once = m;
         for (int part = 0; part < parts; ++part) {
-            const double from = static_cast<double>((begin + n) % N) + static_cast<double>(part) / parts;
+            const double from = static_cast<double>((begin + n) % N) + across * part;
             rate(from, m.data(), k1.data());
-            method.step(m, k1, h, [&](double share, const std::vector<double>& memory, std::vector<double>& out) {
-                rate(from + share / parts, memory.data(), out.data());
+            method.step(m, k1, h, [&](double way, const std::vector<double>& memory, std::vector<double>& out) {
+                rate(from + across * way, memory.data(), out.data());
             });
         }
     }
@@ -285,9 +294,9 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
         component.effect->contribute(component.operatingRange, coefficients.data(), view.at<double>(place), memory, out,
                                      unused);
     };
-    const auto m = paceOf(component, view, 1, sampleRate).steady
-                       ? settledSteady(rate, size, motion.i.size(), begin, sampleRate)
-                       : settledAnyhow(rate, size, motion.i.size(), begin, sampleRate);
+    const auto pace = paceOf(component, view, 1, sampleRate);
+    const auto m = pace.steady ? settledSteady(rate, size, motion.i.size(), begin, sampleRate)
+                               : settledAnyhow(rate, size, motion.i.size(), begin, sampleRate, pace.fastest);
     MemoryStart result;
     result.value = Eigen::Map<const Eigen::VectorXd>(m.data(), static_cast<Eigen::Index>(size));
     if (!result.value.allFinite())

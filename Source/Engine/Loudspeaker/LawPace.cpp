@@ -44,7 +44,7 @@ Pace paceOf(const Component& law, const MotionView& motion, std::size_t perSampl
     const double quarter = static_cast<double>(motion.i.size()) / (static_cast<double>(perSample) * 4.0 * sampleRate);
     const double slowest = *std::min_element(sum.begin(), sum.end()) / asked;
     return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)), slowest * quarter > forgotten,
-            steady, slowest};
+            steady, slowest, fastest};
 }
 
 Pace paceOf(const Component& law, double sampleRate)

@@ -29,6 +29,7 @@ struct Pace {
     bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
     bool steady = true;          ///< each state forgets at a rate of its own that nothing changes, dm/dt = a - r m
     double slowest = 0.0;        ///< 1/s, of these rates, or of their means
+    double fastest = 0.0;        ///< 1/s, at any place
 };
 
 /// @param perSample  values of the motion a sample

@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include "Engine/Loudspeaker/LawPace.h"
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Loudspeaker/Sensors.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
@@ -85,6 +86,7 @@ public:
             }
             if (!fit.finite)
                 return fit;
+            addLags(predicted, J);
             for (std::size_t c = 0; c < channels; ++c) {
                 fit.channels[c].differentiateBy(J[c], residual[c]);
                 fit.pull(residual_.pulls(J[c], residual[c]));
@@ -100,6 +102,17 @@ public:
     }
 
 private:
+    /// The columns of what no state feels: how late the channels are taken.
+    void addLags(const std::vector<Spectrum>& predicted, std::vector<Eigen::MatrixXd>& J) const
+    {
+        const double step = 2.0 * std::numbers::pi * record_.frequency(section_, 1);
+        const auto path = firstParameterOf(model_, model_.components.size());
+        for (std::size_t c = 0; c < J.size(); ++c)
+            if (const auto place = lagPlace(record_.channels[c]))
+                if (const auto at = std::find(active_.begin(), active_.end(), path + *place); at != active_.end())
+                    residual_.fill(c, lagSlope(predicted[c], step), J[c].col(at - active_.begin()));
+    }
+
     bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J, int substeps) const
     {
         const bool same = substeps == options_.substeps;

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The path from the cone to the microphone, in the same form as an effect, so that what is heard is one sum.
+// The paths from the cone to the microphone and to the other sensors, in the same form as an effect, so that what is
+// heard is one sum.
 #include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace excursion {
 namespace {
 
-/// The cone's acceleration over its area Sd, heard a time of flight tau later.
+/// The cone's acceleration over its area Sd, heard a time of flight tau later; and how late the other channels are
+/// taken (SensorLag.h).
 class Radiation final : public EffectOf<Radiation> {
 public:
     Radiation()
         : EffectOf({.id = "path",
-                    .title = "Path to the microphone",
+                    .title = "Paths to the sensors",
                     .physics = "The cone's acceleration makes the pressure in front of it, a time of flight later.",
                     .symptoms = "A pressure like the acceleration, with a phase that falls with frequency.",
                     .remedy = "None is needed.",
@@ -22,11 +25,16 @@ public:
     }
     bool felt() const override { return false; }
 
-    /// Both are held until a channel of pressure is there to see them.
-    std::vector<Parameter> parameters(const OperatingRange&) const override
+    /// All are held until a channel is there to see them.
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
-        return {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false},
-                {.name = "tau", .unit = "s", .free = false}};
+        std::vector<Parameter> own {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false},
+                                    {.name = "tau", .unit = "s", .free = false}};
+        constexpr double turn = 0.05;  // rad
+        for (const char* name : {"tau_i", "tau_x", "tau_v", "tau_a"})
+            own.push_back(
+                {.name = name, .unit = "s", .free = false, .prior = turn / (2.0 * std::numbers::pi * e.highFrequency)});
+        return own;
     }
     int coefficientCount(const OperatingRange&) const override { return 2; }
 

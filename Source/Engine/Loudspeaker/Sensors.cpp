@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Sensors.h"
 
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -39,7 +40,8 @@ std::vector<double> beyond(const std::vector<double>& lateness, double rest)
 }  // namespace
 
 Sensors::Sensors(const Model& model, const SmallSignal& linear, const Trajectory& run, double sampleRate)
-    : run_(run),
+    : model_(model),
+      run_(run),
       sampleRate_(sampleRate),
       gain_(radiationPerArea() / model.microphoneDistance),
       restLateness_(linear.lateness),
@@ -57,19 +59,23 @@ std::vector<Trace> Sensors::tracesOf(Quantity quantity) const
     return spot_ && motionOf(quantity) ? std::vector {first, Trace::spot} : std::vector {first};
 }
 
+double Sensors::step() const
+{
+    return 2.0 * std::numbers::pi * sampleRate_ / static_cast<double>(run_[Trace::current].size());
+}
+
 void Sensors::delay(Spectrum& spectrum) const
 {
-    const double step = 2.0 * std::numbers::pi * sampleRate_ / static_cast<double>(run_[Trace::flow].size());
-    for (std::size_t k = 0; k < spectrum.size(); ++k)
-        spectrum[k] *= std::polar(gain_, -step * static_cast<double>(k) * later_);
+    for (auto& line : spectrum)
+        line *= gain_;
+    lag(spectrum, step(), later_);
 }
 
 void Sensors::addSpot(Spectrum& spectrum, std::span<const double> spot, int order) const
 {
     const auto shift = fft(spot);
-    const double step = 2.0 * std::numbers::pi * sampleRate_ / static_cast<double>(spot.size());
     for (std::size_t k = 0; k < spectrum.size(); ++k) {
-        const std::complex<double> s(0.0, step * static_cast<double>(k));
+        const std::complex<double> s(0.0, step() * static_cast<double>(k));
         spectrum[k] += order == 0 ? shift[k] : order == 1 ? s * shift[k] : s * s * shift[k];
     }
 }
@@ -85,6 +91,7 @@ Sensors::Spectrum Sensors::seen(Quantity quantity) const
     auto spectrum = fft(run_[motion ? motion->trace : Trace::current]);
     if (motion && spot_)
         addSpot(spectrum, run_[Trace::spot], motion->order);
+    lag(spectrum, step(), lagOf(model_, quantity));
     return spectrum;
 }
 
@@ -109,6 +116,7 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
     auto spectrum = fft(row(0));
     if (const auto motion = motionOf(quantity); motion && spot_)
         addSpot(spectrum, row(1), motion->order);
+    lag(spectrum, step(), lagOf(model_, quantity));
     return spectrum;
 }
 
@@ -127,6 +135,10 @@ std::vector<double> Sensors::record(Quantity quantity) const
                            [this](double flow) { return gain_ * flow; });
             return samples;
         }
+        auto spectrum = seen(quantity);
+        return inTime(spectrum);
+    }
+    if (lagOf(model_, quantity) != 0.0) {
         auto spectrum = seen(quantity);
         return inTime(spectrum);
     }

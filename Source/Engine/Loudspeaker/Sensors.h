@@ -17,7 +17,8 @@ namespace excursion {
 ///     displacement  X = DFT{x + spot},   velocity, acceleration: of its derivatives,
 ///     pressure      P = rho/(2 pi d) exp(-j w tau_0) DFT{area acceleration, heard later by lateness - tau_0},
 /// tau_0 the lateness at rest (Emission, Arrival). What drifts repeats in no period: it is heard as it was before the
-/// window if the trajectory's sound begins as much ahead (aheadOf()). The trajectory must outlive this.
+/// window if the trajectory's sound begins as much ahead (aheadOf()). All but the pressure may be taken late
+/// (SensorLag.h). Model and trajectory must outlive this.
 class Sensors {
 public:
     using Spectrum = std::vector<std::complex<double>>;
@@ -44,6 +45,9 @@ private:
     void delay(Spectrum&) const;
     void addSpot(Spectrum&, std::span<const double> spot, int order) const;
 
+    double step() const;  ///< rad/s, from line to line
+
+    const Model& model_;
     const Trajectory& run_;
     double sampleRate_, gain_, restLateness_;
     double later_;  ///< s, of what is left of it beside Trajectory::ahead

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/SmallSignal.h"
 
+#include "Engine/Loudspeaker/SensorLag.h"
+
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ArrowResolvent.h"
 #include "Engine/Loudspeaker/Dynamics.h"
@@ -89,12 +91,18 @@ struct Observed {
     double direct = 0.0, gain = 1.0;
     int order = 0, source = -1;  ///< source: the row of C that it is made of, or -1
     bool delayed = false;
+    double lag = 0.0;                ///< s, of its sensor
+    Eigen::Index lagParameter = -1;  ///< among all parameters of the model; -1: none
 };
 
 Observed observe(const Model& model, const SmallSignal& linear, Quantity quantity)
 {
     Observed observed;
     observed.row = Eigen::RowVectorXd::Zero(linear.A.rows());
+    if (const auto place = lagPlace(quantity)) {
+        observed.lag = lagOf(model, quantity);
+        observed.lagParameter = firstParameterOf(model, model.components.size()) + *place;
+    }
     const auto motion = [&](int order) {  // of the spot that the laser sees
         observed.row = linear.C.row(SmallSignal::spot);
         observed.row[1] += 1.0;
@@ -212,7 +220,8 @@ struct DrivenResponse {
         std::complex<double> result = observed[q].gain;
         for (int k = 0; k < observed[q].order; ++k)
             result *= s;
-        return observed[q].delayed ? result * std::exp(-s * linear.part.lateness) : result;
+        const double late = observed[q].delayed ? linear.part.lateness : observed[q].lag;
+        return late != 0.0 ? result * std::exp(-s * late) : result;
     }
 
     std::complex<double> value(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z) const
@@ -239,6 +248,8 @@ struct DrivenResponse {
         if (observed[q].delayed)
             for (std::size_t k = 0; k < linear.dLateness.size(); ++k)
                 row[parameters[k]] -= s * linear.dLateness[k] * value;
+        if (observed[q].lagParameter >= 0)
+            row[observed[q].lagParameter] -= s * value;
     }
 };
 
@@ -251,7 +262,8 @@ SmallSignal smallSignal(const Model& model, bool withGradient, Drives drives)
     const auto form = linearForm(linearPart(model), withGradient, drives);
     SmallSignal result;
     result.A = Eigen::MatrixXd::Zero(n, n);
-    result.A(among.states, among.states) = form.part.A;
+    for (std::size_t k = 0; k < among.states.size(); ++k)
+        result.A.col(among.states[k])(among.states) = form.part.A.col(static_cast<Eigen::Index>(k));
     result.B = Eigen::VectorXd::Zero(n);
     result.B(among.states) = form.part.B;
     result.C = Eigen::MatrixXd::Zero(2, n);
