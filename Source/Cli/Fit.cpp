@@ -6,6 +6,8 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Diagnosis/FollowSections.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Document/DocumentFormat.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
@@ -46,6 +48,10 @@ void run(const FitArguments& options, Terminal& terminal)
         auto record = open.take.record();
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
+        if (sectionsExplain(model, record, summary.substeps)) {
+            record.sectionsDrift = true;
+            summary = refine(model, record, {}, progress.silent());
+        }
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));
         caveats = caveatsOf(model);
     }

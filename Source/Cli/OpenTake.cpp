@@ -4,6 +4,7 @@
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
+#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ReadTake.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -28,6 +29,7 @@ Record recordFor(const Model& model, const OpenTake& open)
     adapt(record, model);
     if (followsDrift(model, record))
         takeDriftOutOfNoise(record);
+    record.sectionsDrift = sectionsExplain(model, record);
     return record;
 }
 

@@ -246,6 +246,8 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
         result.channels.push_back(std::move(channel));
     }
     result.chiSquaredPerValue = cost / std::max(1.0, rows);
+    if (record.sectionsDrift)
+        result.sectionMoves = movesOf(fits);
     if (options.spectra) {
         result.residuals = residualCurves(model, record, sections, fits);
         const bool isTold = !result.residuals.empty();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/ErrorLevel.h"
+#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Diagnosis/RestShift.h"
 #include "Engine/Loudspeaker/Model.h"
@@ -53,7 +54,8 @@ struct Comparison {
     std::vector<ResidualCurve> residuals;  ///< against motion and current, at the loudest level
     std::vector<ResidualCurve> overTime;   ///< stiffness and resistance of each section of the take
     std::optional<RestShift> restShift;
-    double chiSquaredPerValue = 0.0;  ///< over all channels and levels
+    std::optional<SectionMoves> sectionMoves;  ///< of the compared sections, where the record has them followed
+    double chiSquaredPerValue = 0.0;           ///< over all channels and levels
     bool noiseKnown = false;
     bool validated = false;  ///< on sections that no fit saw
 };

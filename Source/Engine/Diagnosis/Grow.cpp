@@ -110,6 +110,7 @@ public:
     }
 
     bool isNoise() const { return now_.isNoise(); }
+    const Left& now() const { return now_; }
     Waypoint place() const
     {
         const auto ids = whole_.model.effectIds();
@@ -273,6 +274,17 @@ bool Growth::byTrial(const Progress& progress)
     return true;
 }
 
+/// Whether moves between sections explain what a model left better than the effects that have come in since. They may
+/// be in a wrong shape yet.
+bool explainsMore(const Left& bySections, const Left& byEffects)
+{
+    constexpr double near = 1.5, clearly = 1.5;
+    if (!bySections.areNoise() || bySections.chiSquaredPerValue > near * atNoise)
+        return false;
+    const auto excess = [](const Left& left) { return std::max(left.chiSquaredPerValue - sureNoise, 1.0 - sureNoise); };
+    return excess(byEffects) > clearly * excess(bySections);
+}
+
 /// Puts effects into a whole. Whether it came to where no other search has been.
 /// @param known  of another search
 bool grow(Grown& whole, const Model& base, const Record& record, WholeSearch& search, const Waypoints& known,
@@ -282,9 +294,16 @@ bool grow(Grown& whole, const Model& base, const Record& record, WholeSearch& se
     Growth growth(whole, base, record, search);
     for (int n = 0; n < rounds && !growth.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
+        const auto before = whole;
+        const auto bySections = search.leftOfSections(whole.model);
         const auto outcome = growth.byVote(part.part(0.0, 0.8));
         if (outcome == Growth::Outcome::again)
             continue;
+        if (explainsMore(bySections, growth.now())) {
+            whole = before;
+            whole.sectionsDrift = true;
+            break;
+        }
         if (outcome == Growth::Outcome::stuck && !growth.byOtherStarts(part.part(0.8, 0.9))
             && !growth.byTrial(part.part(0.9, 1.0)))
             break;

@@ -15,6 +15,8 @@ struct Grown {
     Model model;
     FitSummary fit;
     Waypoints path;
+    /// nothing is left but small moves between the sections of the take (WholeSearch::leftOfSections())
+    bool sectionsDrift = false;
 };
 
 /// Puts the effects that the record shows into a base: by rounds of voting, beside which the law comes in that alone

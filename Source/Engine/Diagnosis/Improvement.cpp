@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/RungsTo.h"
 #include "Engine/Diagnosis/StepsByResponse.h"
+#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/Sums.h"
 #include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
@@ -229,10 +230,11 @@ Improvement::Together Improvement::together(Record& record, const Progress& prog
     if (whole.votes.empty()
         || (oneIsKnown && whole.votes.size() == 1 && whole.votes.begin()->first == named.front().effect))
         return {};
-    if (whole.followsDrift) {
+    if (whole.followsDrift)
         takeDriftOutOfNoise(record);
+    record.sectionsDrift = record.sectionsDrift || whole.sectionsDrift;
+    if (whole.followsDrift || whole.sectionsDrift)
         base.comparison = compare(base.model, record);
-    }
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
     if (rungs.empty())
         return {};
@@ -279,7 +281,8 @@ void Improvement::use(Data data, std::size_t kept, const Progress& silent)
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
     rungs.resize(kept);
     if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
-        now && before && noiseHoldsDrift(*now) != noiseHoldsDrift(*before))
+        now && before
+        && (noiseHoldsDrift(*now) != noiseHoldsDrift(*before) || now->sectionsDrift != before->sectionsDrift))
         for (auto& rung : rungs)
             if (auto comparison = tryCompare(rung.model, *now, {rung.fit.substeps, true}, silent)) {
                 rung.comparison = std::move(*comparison);
@@ -290,8 +293,9 @@ void Improvement::use(Data data, std::size_t kept, const Progress& silent)
     data_ = std::move(data);
 }
 
-/// Compares and diagnoses the rung's model.
-Rung Improvement::judged(Rung rung, const Data& data, const Progress& progress) const
+/// Compares and diagnoses the rung's model. What no effect explains may be small moves between the sections of the
+/// take, which the record has followed then.
+Rung Improvement::judged(Rung rung, Data& data, const Progress& progress) const
 {
     const auto judge = [&](const Progress& part) {
         rung.comparison = std::visit([&](const auto& d) { return compareAsFitted(rung, d); }, data);
@@ -300,9 +304,13 @@ Rung Improvement::judged(Rung rung, const Data& data, const Progress& progress) 
     };
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
-    if (const auto* record = std::get_if<Record>(&data);
-        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable()
-        && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise))) {
+    auto* record = std::get_if<Record>(&data);
+    const bool isUnknown = record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable();
+    const bool moves = isUnknown && sectionsExplain(rung.model, *record, rung.fit.substeps);
+    if (moves)
+        record->sectionsDrift = true;
+    if (isUnknown
+        && (moves || rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise))) {
         auto better = rung.model;
         if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7));
             run.usable()) {

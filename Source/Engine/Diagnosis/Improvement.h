@@ -72,7 +72,7 @@ private:
     bool mayBeCoupled() const;
     Together together(const Spectra&, const Progress&) const;
     Together together(Record&, const Progress&) const;
-    Rung judged(Rung, const Data&, const Progress&) const;
+    Rung judged(Rung, Data&, const Progress&) const;
     /// Goes on with other data; the first `kept` rungs stay, judged by them.
     void use(Data, std::size_t kept, const Progress& silent);
     void keep(Rung);

@@ -22,6 +22,7 @@ Whole wholeOf(Grown grown)
     Whole whole;
     whole.model = std::move(grown.model);
     whole.fit = std::move(grown.fit);
+    whole.sectionsDrift = grown.sectionsDrift;
     return whole;
 }
 
@@ -81,6 +82,8 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
     constexpr double far = 100.0;
     const auto begun = grown(base, record, search, {}, progress.part(0.0, 0.4));
     auto first = wholeOf(*begun);  // nobody has been anywhere before
+    if (first.sectionsDrift)
+        return {std::move(first), {}};
     if (mayBeCoupled && !isNear(first, record)) {
         // Another start, or a refinement, may lead further: only what leaves hardly anything of the error is believed.
         constexpr double hardly = 0.1;
@@ -130,6 +133,10 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
     search.chooseResiduals(whole.model);
     if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
         auto more = wholeOf(*grown(whole.model, record, search, {}, progress.part(0.0, 0.2)));
+        if (more.sectionsDrift) {  // then another noise tells what is needed
+            more.votes = std::move(whole.votes);
+            return more;
+        }
         if (more.fit.usable()) {
             more.fit = refine(more.model, record, options, progress.part(0.2, 0.4));
             whole = std::move(more);
@@ -177,23 +184,35 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
                const Progress& progress)
 {
     WholeSearch search(base, record, options, progress);
-    auto found = best(base, record, search, options, mayBeCoupled, progress.part(0.0, 0.7));
-    if (found.whole.coupling > 0.0 || !found.whole.fit.usable())
+    auto found = best(base, record, search, options, mayBeCoupled, progress.part(0.0, 0.6));
+    if (found.whole.coupling > 0.0 || !(found.whole.fit.usable() || found.whole.sectionsDrift))
         return found.whole;
-    if (!followsDrift(found.whole.model, record))
-        return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));
-    auto driftless = record;
-    takeDriftOutOfNoise(driftless);
-    WholeSearch closer(base, driftless, options, progress);
-    found.tried.clear();
-    auto closely = found.whole.model;
-    const auto run = refine(closely, driftless, options, progress.part(0.7, 0.8));
-    if (!run.usable())
-        return found.whole;
-    found.whole.model = std::move(closely);
-    found.whole.fit = run;
-    auto whole = completed(std::move(found), driftless, closer, options, progress.part(0.8, 1.0));
-    whole.followsDrift = true;
+    auto nearer = record;
+    const auto closely = [&](Whole from, const Progress& part) {
+        WholeSearch closer(base, nearer, options, part);
+        Candidate again {from, {}};
+        const auto run = refine(again.whole.model, nearer, options, part.part(0.0, 0.3));
+        if (!run.usable())
+            return from;
+        again.whole.fit = run;
+        again.whole.sectionsDrift = false;
+        auto whole = completed(std::move(again), nearer, closer, options, part.part(0.3, 1.0));
+        whole.followsDrift = from.followsDrift;
+        return whole;
+    };
+    auto whole = std::move(found.whole);
+    whole.followsDrift = !whole.sectionsDrift && followsDrift(whole.model, record);
+    if (!whole.followsDrift && !whole.sectionsDrift)
+        whole = completed({std::move(whole), std::move(found.tried)}, record, search, options, progress.part(0.6, 0.8));
+    if (whole.followsDrift) {
+        takeDriftOutOfNoise(nearer);
+        whole = closely(std::move(whole), progress.part(0.6, 0.8));
+    }
+    if (whole.sectionsDrift) {
+        nearer.sectionsDrift = true;
+        whole = closely(std::move(whole), progress.part(0.8, 1.0));
+        whole.sectionsDrift = true;
+    }
     return whole;
 }
 

@@ -18,6 +18,8 @@ struct Whole {
     FitSummary fit;  ///< not usable if nothing was found
     /// the noise is that without drift (takeDriftOutOfNoise()): the model follows what the periods drift
     bool followsDrift = false;
+    /// small moves between the sections of the take are followed (Record::sectionsDrift)
+    bool sectionsDrift = false;
     /// of the model, on each effect that the base does not have; or of a fuller one that missed it by 6 dB or more
     std::map<std::string, Vote> votes;
 };

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/WholeSearch.h"
 
 #include "Engine/Diagnosis/FindAnew.h"
+#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -90,7 +91,22 @@ Left WholeSearch::left(const Model& model, bool played) const
     auto plain = test_.run();
     plain.gradient = false;
     plain.played = played;
-    const auto fits = quickError(model, record_, sections_, {}, plain, silent_);
+    return leftBy(quickError(model, record_, sections_, {}, plain, silent_));
+}
+
+Left WholeSearch::leftOfSections(const Model& model) const
+{
+    if (record_.sectionsDrift || !record_.noiseKnown || !hasPeriods(record_) || sections_.size() < 2)
+        return {};
+    auto followed = test_.run();
+    followed.gradient = false;
+    followed.sectionsDrift = true;
+    const auto fits = quickError(model, record_, sections_, {}, followed, silent_);
+    return movesOf(fits).areSmall() ? leftBy(fits) : Left {};
+}
+
+Left WholeSearch::leftBy(const std::vector<SectionFit>& fits) const
+{
     const auto sum = sumOf(fits);
     Left left;
     if (!sum)

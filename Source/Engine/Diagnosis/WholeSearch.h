@@ -82,6 +82,9 @@ public:
     const ScoreOptions& test() const { return test_; }
 
     Left left(const Model&) const;
+    /// The same where small moves between the sections of the take are followed; no channels where larger ones would
+    /// be, and of a record of which that says nothing.
+    Left leftOfSections(const Model&) const;
 
     /// By how many dB more a model leaves than another, in the channel that tells most: of the mean over all lines,
     /// beside what is noise for sure, or of the power, which may stand in a few lines, over that of the noise.
@@ -164,6 +167,7 @@ private:
     FitSummary orBetter(Model&, FitSummary, std::vector<Model> others, const Progress&) const;
     FitSummary glanceAt(Model&) const;
     Left left(const Model&, bool played) const;
+    Left leftBy(const std::vector<SectionFit>&) const;
     std::set<std::string> strangeIn(const Model&) const;
     bool hasBecomeStrange(const Model&, const Model& before) const;
     std::set<std::string> takeOutOneByOne(Model&) const;

@@ -51,6 +51,8 @@ struct Record {
     std::vector<std::optional<double>> wanderDb;  ///< [channel], of the take (Wander.h)
     std::vector<Section> sections;
     bool noiseKnown = false;
+    /// Stiffness and resistance of a section may differ a little from those of the others (SectionDrift.h)
+    bool sectionsDrift = false;
     double lowFrequency = 0.0, highFrequency = 0.0;  ///< Hz: lines outside are not compared
     double bandLow = 0.0, bandHigh = 0.0;            ///< Hz: the excited band
     std::size_t leadIn = 0;                          ///< samples that a periodic section is run before its window

@@ -139,6 +139,21 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     return paths;
 }
 
+std::map<std::size_t, Paths> pathsByWindow(const Model& model, const Record& record,
+                                           const std::vector<std::size_t>& sections, bool withGradient,
+                                           unsigned threads)
+{
+    std::map<std::size_t, Paths> paths;
+    for (const auto s : sections)
+        if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
+            const auto [first, last] = record.lineRange(section);
+            paths[section.window] = pathsOf(model, record.channels, first, last,
+                                            record.sampleRate / static_cast<double>(section.window), withGradient,
+                                            threads);
+        }
+    return paths;
+}
+
 LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                           const std::vector<ShownMotion>& motions, bool withGradient)
 {

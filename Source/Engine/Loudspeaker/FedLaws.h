@@ -7,6 +7,7 @@
 #include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <cstddef>
+#include <map>
 #include <vector>
 
 namespace excursion {
@@ -28,6 +29,10 @@ struct Paths {
 /// @param resolution  Hz from line to line
 Paths pathsOf(const Model&, const std::vector<Quantity>&, std::size_t first, std::size_t last, double resolution,
               bool withGradient, unsigned threads = 1);
+
+/// pathsOf() the record's channels for each window of these sections.
+std::map<std::size_t, Paths> pathsByWindow(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                                           bool withGradient, unsigned threads = 1);
 
 /// The contributions of all laws for the motion of one section.
 struct Fed {

@@ -22,8 +22,15 @@ using Complex = std::complex<double>;
 /// Residuals and columns of one section.
 class FedSection {
 public:
-    FedSection(const Model& model, const Record& record, const Section& section, const Fed& fed, const Paths& paths)
-        : model_(model), record_(record), section_(section), residual_(record, section), fed_(fed), paths_(paths)
+    FedSection(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
+               const Fed& fed, const Paths& paths)
+        : model_(model),
+          record_(record),
+          section_(section),
+          motion_(motion),
+          residual_(record, section),
+          fed_(fed),
+          paths_(paths)
     {
     }
 
@@ -31,30 +38,43 @@ public:
     SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const SectionFit* played)
     {
         SectionFit fit;
-        std::vector<Eigen::MatrixXd> slopes;
+        const auto channels = record_.channels.size();
+        std::vector<Spectrum> predicted;
+        std::vector<Eigen::VectorXd> residual;
+        std::vector<Eigen::MatrixXd> J;
         fit.finite = true;
-        for (std::size_t c = 0; c < record_.channels.size(); ++c) {
-            auto predicted = sum(c, fed_.voltage, fed_.force);
-            const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted);
-            const auto r = residual_.of(c, played ? played->predicted[c] : predicted);
-            NormalEquations normal(r);
+        for (std::size_t c = 0; c < channels; ++c) {
+            predicted.push_back(sum(c, fed_.voltage, fed_.force));
+            const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted[c]);
+            if (options.gradient && !active.empty())
+                J.push_back(columns(c, active, heard));
+            if (played)
+                predicted[c] = played->predicted[c];
+            residual.push_back(residual_.of(c, predicted[c]));
+        }
+        if (record_.sectionsDrift || options.sectionsDrift) {
+            const auto shown = everySample(motion_);
+            const SectionDrift drift(model_, record_, residual_, paths_, fft(shown.i), fft(shown.x));
+            fit.drift = played ? played->drift : drift.follow(predicted, residual);
+            if (!J.empty())
+                drift.takeOut(J);
+        }
+        for (std::size_t c = 0; c < channels; ++c) {
+            NormalEquations normal(residual[c]);
             fit.finite = fit.finite && std::isfinite(normal.cost);
-            if (options.gradient && !active.empty()) {
-                auto J = columns(c, active, heard);
-                normal.differentiateBy(J, r);
-                fit.pull(residual_.pulls(J, r));
+            if (!J.empty()) {
+                normal.differentiateBy(J[c], residual[c]);
+                fit.pull(residual_.pulls(J[c], residual[c]));
                 if (options.slopes)
-                    fit.slopes.push_back(J.cast<float>());
-                if (options.shared)
-                    slopes.push_back(std::move(J));
+                    fit.slopes.push_back(J[c].cast<float>());
             }
             fit.channels.push_back(std::move(normal));
-            fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
-            if (options.spectra)
-                fit.predicted.push_back(played ? played->predicted[c] : predicted);
+            fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted[c]));
         }
-        if (!slopes.empty())
-            fit.shared = residual_.shared(slopes);
+        if (options.shared && !J.empty())
+            fit.shared = residual_.shared(J);
+        if (options.spectra)
+            fit.predicted = std::move(predicted);
         return fit;
     }
 
@@ -173,6 +193,7 @@ private:
     const Model& model_;
     const Record& record_;
     const Section& section_;
+    const ShownMotion& motion_;
     Residual residual_;
     const Fed& fed_;
     const Paths& paths_;
@@ -200,20 +221,13 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
             wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
-    std::map<std::size_t, Paths> paths;  // by window
-    for (const auto s : sections)
-        if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
-            const auto [first, last] = record.lineRange(section);
-            paths[section.window] = pathsOf(model, record.channels, first, last,
-                                            record.sampleRate / static_cast<double>(section.window), gradient,
-                                            options.threads);
-        }
+    const auto paths = pathsByWindow(model, record, sections, gradient, options.threads);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
         const auto fed = feed(model, record, section, motions[s], histories, s, wanted,
                               known && gradient ? &(*known)[s] : nullptr);
-        fits[s] = FedSection(model, record, section, fed, paths.at(section.window))
+        fits[s] = FedSection(model, record, section, motions[s], fed, paths.at(section.window))
                       .run(active, options, played ? &(*played)[s] : nullptr);
         return fits[s].finite;
     });

@@ -8,6 +8,7 @@
 #include "Engine/Loudspeaker/StartState.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Numerics/Parallel.h"
+#include "Engine/Signal/Fft.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
                const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const StepDivision& division,
-               std::size_t leadIn, std::size_t ahead, const StartState& from)
+               std::size_t leadIn, std::size_t ahead, const StartState& from, const Paths* paths)
         : model_(model),
           record_(record),
           section_(section),
@@ -49,7 +50,8 @@ public:
           active_(active),
           options_(options),
           division_(division),
-          from_(from)
+          from_(from),
+          paths_(paths)
     {
         input_ = record.drive(section, leadIn);
         drive_.emplace(input_, record.sampleRate, options.substeps);
@@ -74,6 +76,13 @@ public:
         for (std::size_t c = 0; c < channels; ++c) {
             predicted.push_back(sensors.seen(record_.channels[c]));
             residual.push_back(residual_.of(c, predicted[c]));
+        }
+        std::optional<SectionDrift> drift;
+        if (paths_) {
+            drift.emplace(model_, record_, residual_, *paths_, fft(trajectory.current), fft(trajectory.displacement));
+            fit.drift = drift->follow(predicted, residual);
+        }
+        for (std::size_t c = 0; c < channels; ++c) {
             fit.power.push_back(residual_.power(c, predicted[c]));
             fit.channels.emplace_back(residual[c]);
         }
@@ -87,6 +96,8 @@ public:
             if (!fit.finite)
                 return fit;
             addLags(predicted, J);
+            if (drift)
+                drift->takeOut(J);
             for (std::size_t c = 0; c < channels; ++c) {
                 fit.channels[c].differentiateBy(J[c], residual[c]);
                 fit.pull(residual_.pulls(J[c], residual[c]));
@@ -157,6 +168,7 @@ private:
     const OutputErrorOptions& options_;
     const StepDivision& division_;
     const StartState& from_;
+    const Paths* paths_;
     std::vector<double> input_;
     std::optional<Drive> drive_;
     Window window_;
@@ -206,10 +218,14 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     const StepDivision division(model, record.sampleRate, options.threads);
     const auto from = startStates(model, record, sections, leadIn, gradient, options.threads);
     const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
+    const auto paths = record.sectionsDrift || wanted.sectionsDrift
+                           ? pathsByWindow(model, record, sections, false, options.threads)
+                           : std::map<std::size_t, Paths> {};
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
+        const auto path = paths.find(record.sections[sections[n]].window);
         fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, division, leadIn, ahead,
-                             from[n])
+                             from[n], path == paths.end() ? nullptr : &path->second)
                       .run();
         return fits[n].finite;
     });

@@ -4,6 +4,7 @@
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Estimate/Record.h"
 #include "Engine/Loudspeaker/Residual.h"
+#include "Engine/Loudspeaker/SectionDrift.h"
 #include "Engine/Progress.h"
 
 #include <Eigen/Core>
@@ -19,6 +20,7 @@ struct SectionFit {
     bool finite = false;
     std::vector<NormalEquations> channels;                     ///< [channel]
     std::vector<ErrorPower> power;                             ///< [channel]
+    SectionDrift::Amount drift;                                ///< of the section, where the record has one
     std::vector<std::vector<std::complex<double>>> predicted;  ///< [channel][line], if asked for
     std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, if asked for
     Eigen::MatrixXd pulls;                                     ///< of all channels (Residual::pulls()), with N and g
@@ -30,11 +32,12 @@ struct SectionFit {
 };
 
 struct OutputErrorOptions {
-    bool gradient = true;  ///< fill N and g
-    bool spectra = false;  ///< fill predicted
-    bool slopes = false;   ///< fill slopes
-    bool shared = false;   ///< fill shared, with N and g
-    int substeps = 1;      ///< of the simulation, per sample, at least 1; each in as many parts as its place asks for
+    bool gradient = true;        ///< fill N and g
+    bool spectra = false;        ///< fill predicted
+    bool slopes = false;         ///< fill slopes
+    bool shared = false;         ///< fill shared, with N and g
+    bool sectionsDrift = false;  ///< as if the record said so (Record::sectionsDrift)
+    int substeps = 1;  ///< of the simulation, per sample, at least 1; each in as many parts as its place asks for
     /// of the sensitivities: they may be coarser, as they only steer the search; raised to the smallest stable number
     int gradientSubsteps = 0;
     /// for quickError(): residuals of the simulation, slopes of fed laws

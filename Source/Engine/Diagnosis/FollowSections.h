@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Estimate/Record.h"
+#include "Engine/Loudspeaker/OutputError.h"
+
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// By how much the stiffness and the resistance move between the sections of a take, shares of K and Re: the largest
+/// minus the least.
+struct SectionMoves {
+    double stiffness = 0.0, resistance = 0.0;
+
+    /// No more than a suspension that is worked, or a coil, does unnoticed: 3 % and 0.5 %. A larger move is an effect.
+    bool areSmall() const { return stiffness < 0.03 && resistance < 0.005; }
+};
+
+SectionMoves movesOf(const std::vector<SectionFit>&);
+
+/// "the stiffness moves by 0.4 % and the resistance by 0.1 %"
+std::string inWords(const SectionMoves&);
+
+/// Whether nothing but noise is left of a take that leaves more, once small moves between its sections are followed
+/// (Record::sectionsDrift). Not of a record in which they are, nor of one without several sections and a known noise.
+bool sectionsExplain(const Model&, const Record&, int substeps = 0);
+
+}  // namespace excursion
