@@ -2,6 +2,8 @@
 #include "Engine/Diagnosis/FollowSections.h"
 
 #include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/QuickFit.h"
+#include "Engine/Diagnosis/Sums.h"
 #include "Engine/Document/Figures.h"
 
 #include <algorithm>
@@ -25,17 +27,25 @@ std::string inWords(const SectionMoves& moves)
            + figure(100.0 * moves.resistance, "%.2g") + " %";
 }
 
-bool sectionsExplain(const Model& model, const Record& record, int substeps)
+bool sectionsExplain(Model model, const Record& record, int substeps)
 {
-    if (record.sectionsDrift || !record.noiseKnown || !hasPeriods(record) || record.sections.size() < 2)
+    if (record.sectionsDrift || !record.noiseKnown || !hasPeriods(record) || record.levels.size() < 2)
         return false;
     const auto plain = tryCompare(model, record, {substeps, false});
     if (!plain || isNoise(*plain))
         return false;
     auto followed = record;
     followed.sectionsDrift = true;
+    FitOptions options;
+    options.substeps = substeps;
+    options.fedGradient = true;
+    options.search = {10, 1e-3};
+    if (!fitFed(model, followed, estimationSections(followed), options).usable())
+        return false;
     const auto rest = tryCompare(model, followed, {substeps, false});
-    return rest && isNoise(*rest) && rest->sectionMoves && rest->sectionMoves->areSmall();
+    constexpr double clearly = 1.3;  // times less
+    return rest && rest->sectionMoves && rest->sectionMoves->areSmall()
+           && (isNoise(*rest) || rest->chiSquaredPerValue < std::min(atNoise, plain->chiSquaredPerValue / clearly));
 }
 
 }  // namespace excursion

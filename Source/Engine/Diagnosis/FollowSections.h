@@ -23,8 +23,9 @@ SectionMoves movesOf(const std::vector<SectionFit>&);
 /// "the stiffness moves by 0.4 % and the resistance by 0.1 %"
 std::string inWords(const SectionMoves&);
 
-/// Whether nothing but noise is left of a take that leaves more, once small moves between its sections are followed
-/// (Record::sectionsDrift). Not of a record in which they are, nor of one without several sections and a known noise.
-bool sectionsExplain(const Model&, const Record&, int substeps = 0);
+/// Whether a take that leaves more leaves noise, or nearly so, once small moves between its sections are followed
+/// (Record::sectionsDrift) by the model, fitted again. Not of a record in which they are, nor of one without several
+/// levels and a known noise.
+bool sectionsExplain(Model, const Record&, int substeps = 0);
 
 }  // namespace excursion

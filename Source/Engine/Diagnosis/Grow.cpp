@@ -279,7 +279,7 @@ bool Growth::byTrial(const Progress& progress)
 bool explainsMore(const Left& bySections, const Left& byEffects)
 {
     constexpr double near = 1.5, clearly = 1.5;
-    if (!bySections.areNoise() || bySections.chiSquaredPerValue > near * atNoise)
+    if (bySections.channels.empty() || bySections.chiSquaredPerValue > near * atNoise)
         return false;
     const auto excess = [](const Left& left) { return std::max(left.chiSquaredPerValue - sureNoise, 1.0 - sureNoise); };
     return excess(byEffects) > clearly * excess(bySections);

@@ -96,12 +96,22 @@ Left WholeSearch::left(const Model& model, bool played) const
 
 Left WholeSearch::leftOfSections(const Model& model) const
 {
-    if (record_.sectionsDrift || !record_.noiseKnown || !hasPeriods(record_) || sections_.size() < 2)
+    if (record_.sectionsDrift || !record_.noiseKnown || !hasPeriods(record_) || record_.levels.size() < 2)
         return {};
     auto followed = test_.run();
     followed.gradient = false;
     followed.sectionsDrift = true;
-    const auto fits = quickError(model, record_, sections_, {}, followed, silent_);
+    constexpr double half = 0.5;
+    const auto glimpse = leftBy(quickError(model, record_, sections_, {}, followed, silent_));
+    if (glimpse.channels.empty()
+        || glimpse.chiSquaredPerValue - sureNoise > half * (left(model).chiSquaredPerValue - sureNoise))
+        return {};
+    auto fitted = model;
+    auto options = within(brief);
+    options.sectionsDrift = true;
+    if (!quickFit(fitted, record_, sections_, options, silent_).usable())
+        return {};
+    const auto fits = quickError(fitted, record_, sections_, {}, followed, silent_);
     return movesOf(fits).areSmall() ? leftBy(fits) : Left {};
 }
 

@@ -318,6 +318,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     OutputErrorOptions run;
     run.threads = options.threads;
     run.shared = !options.fed;
+    run.sectionsDrift = options.sectionsDrift;
     if (options.fed && hasPeriods(record)) {
         FitSummary summary;
         auto motions = settledMotions(model, record, sections, options.threads);

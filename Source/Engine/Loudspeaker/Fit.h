@@ -31,6 +31,7 @@ struct FitOptions {
     /// What is free is the caller's choice. Otherwise Rms is held where, without a current channel, only laws could
     /// tell it from the coil's damping and the model has none.
     bool asGiven = false;
+    bool sectionsDrift = false;  ///< as if the record said so (Record::sectionsDrift)
 
     bool isValid(std::string* reason) const;
 };

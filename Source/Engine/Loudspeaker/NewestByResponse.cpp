@@ -77,6 +77,30 @@ SearchSummary addByResponse(Model& model, const Effect& effect, const std::vecto
     return summary;
 }
 
+namespace {
+
+/// A model whose newest effect starts departed from its law, after a few steps in that shape: what is plausible is
+/// weighed by what is left at the start of a search, and would draw the shape to the law before its strength has found
+/// itself.
+Model settledInShape(Model model, const std::vector<ResponseTarget>& targets)
+{
+    auto held = model;
+    bool any = false;
+    for (auto& p : held.components.back().parameters)
+        if (p.departure && p.value != 0.0) {
+            any = true;
+            p.free = false;
+        }
+    if (!any || !fitResponse(held, targets, {10, 1e-3}).usable())
+        return model;
+    const auto& own = model.components.back().parameters;
+    for (std::size_t k = 0; k < own.size(); ++k)
+        held.components.back().parameters[k].free = own[k].free;
+    return held;
+}
+
+}  // namespace
+
 SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const auto& newest = model.components.back();
@@ -104,7 +128,7 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     for (const auto& start : newest.effect->starts(newest.operatingRange)) {
         for (const auto& restart : newest.effect->restarts(newest.operatingRange, start, model.base().parameters))
             begin(withResonance(withOwn(model, restart.own), restart.resonance));
-        begin(withOwn(model, start));
+        begin(settledInShape(withOwn(model, start), few));
     }
     const auto sort = [&](const std::vector<ResponseTarget>& at) {
         std::stable_sort(ways.begin(), ways.end(), better);

@@ -78,7 +78,7 @@ public:
             residual.push_back(residual_.of(c, predicted[c]));
         }
         std::optional<SectionDrift> drift;
-        if (paths_) {
+        if (paths_ && SectionDrift::mayDrift(record_, section_)) {
             drift.emplace(model_, record_, residual_, *paths_, fft(trajectory.current), fft(trajectory.displacement));
             fit.drift = drift->follow(predicted, residual);
         }

@@ -26,6 +26,12 @@ inline constexpr int cells = 8;
 inline constexpr int firstOrder = 2, orders = 5;
 inline constexpr int departures = 2 * orders;  ///< numbers: w_2 .. w_6, r_2 .. r_6
 
+/// G_m(k)
+inline double cosine(int m, int k)
+{
+    return std::sqrt(2.0 / cells) * std::cos(std::numbers::pi * m * (k + 0.5) / cells);
+}
+
 inline std::vector<Parameter> parameters()
 {
     // reach: in spreads; only a runaway search meets it
@@ -45,6 +51,17 @@ inline std::vector<Parameter> parameters()
     return result;
 }
 
+/// Departures with which one cell outweighs its neighbours by some e^4, as nearly as the cosines can: a start for a
+/// spectrum that is a single relaxation, far from any law.
+inline std::vector<double> nearlyAlone(int cell)
+{
+    constexpr double depth = 7.0;
+    std::vector<double> numbers(departures, 0.0);
+    for (int n = 0; n < orders; ++n)
+        numbers[static_cast<std::size_t>(n)] = depth * cosine(firstOrder + n, cell);
+    return numbers;
+}
+
 template <class T>
 struct Departure {
     T weight, rate;  ///< factors
@@ -57,7 +74,7 @@ Departure<T> departure(const T* numbers, int cell)
     using std::exp;
     T weight = T(0.0), rate = T(0.0);
     for (int n = 0; n < orders; ++n) {
-        const double G = std::sqrt(2.0 / cells) * std::cos(std::numbers::pi * (firstOrder + n) * (cell + 0.5) / cells);
+        const double G = cosine(firstOrder + n, cell);
         weight += G * numbers[n];
         rate += G * numbers[orders + n];
     }

@@ -12,6 +12,12 @@ constexpr double stiffnessMoves = 0.02, resistanceMoves = 0.005;  // sigma
 
 }  // namespace
 
+bool SectionDrift::mayDrift(const Record& record, const Section& section)
+{
+    return record.levels.size() > 1
+           && section.level != std::min_element(record.levels.begin(), record.levels.end()) - record.levels.begin();
+}
+
 SectionDrift::SectionDrift(const Model& model, const Record& record, const Residual& residual, const Paths& paths,
                            const Spectrum& i, const Spectrum& x)
     : residual_(residual)

@@ -56,12 +56,19 @@ public:
             result.push_back(std::move(p));
         return result;
     }
+    /// Along the law, and as one loop with a time constant somewhere in the band, as of a copper ring.
     std::vector<std::vector<double>> starts(const OperatingRange&) const override
     {
         std::vector<std::vector<double>> result;
         for (const double a : {0.5, 0.65, 0.8}) {
             result.emplace_back(2 + spectrum::departures, 0.0);
             result.back()[1] = a;
+        }
+        constexpr double flat = 0.9;  // exponent: slow cells have little weight
+        for (const int cell : {1, 3, 5, 6, 7}) {
+            result.push_back({0.0, flat});
+            const auto alone = spectrum::nearlyAlone(cell);
+            result.back().insert(result.back().end(), alone.begin(), alone.end());
         }
         return result;
     }
