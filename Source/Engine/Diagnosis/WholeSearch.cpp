@@ -101,10 +101,10 @@ Left WholeSearch::leftOfSections(const Model& model) const
     auto followed = test_.run();
     followed.gradient = false;
     followed.sectionsDrift = true;
-    constexpr double half = 0.5;
+    constexpr double most = 0.75;  // of what the model leaves
     const auto glimpse = leftBy(quickError(model, record_, sections_, {}, followed, silent_));
     if (glimpse.channels.empty()
-        || glimpse.chiSquaredPerValue - sureNoise > half * (left(model).chiSquaredPerValue - sureNoise))
+        || glimpse.chiSquaredPerValue - sureNoise > most * (left(model).chiSquaredPerValue - sureNoise))
         return {};
     auto fitted = model;
     auto options = within(brief);

@@ -83,7 +83,8 @@ public:
 
     Left left(const Model&) const;
     /// The same after a brief fit that follows small moves between the sections of the take; no channels where larger
-    /// ones would be, where these explain less than half of what is left, and of a record of which that says nothing.
+    /// ones would be, where these explain less than a quarter of what is left, and of a record of which that says
+    /// nothing.
     Left leftOfSections(const Model&) const;
 
     /// By how many dB more a model leaves than another, in the channel that tells most: of the mean over all lines,
