@@ -156,6 +156,8 @@ void run(const CompareArguments& options, Terminal& terminal)
         printErrors(comparison, terminal);
     else
         printLevels(comparison, open.take.measurement().input().unit, terminal);
+    if (comparison.sectionMoves)
+        terminal.say(wrapped(told(*comparison.sectionMoves)));
     printSpectrum(comparison, terminal);
     printResiduals(comparison, terminal);
     auto document = toJson(comparison);

@@ -47,10 +47,16 @@ void run(const FitArguments& options, Terminal& terminal)
     } else {
         auto record = open.take.record();
         const auto progress = terminal.progress();
-        model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
+        model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.9));
         if (sectionsExplain(model, record, summary.substeps)) {
-            record.sectionsDrift = true;
-            summary = refine(model, record, {}, progress.silent());
+            auto followed = record;
+            followed.sectionsDrift = true;
+            auto again = model;
+            if (const auto run = refine(again, followed, {}, progress.part(0.9, 0.95)); run.usable()) {
+                model = std::move(again);
+                summary = run;
+                record = std::move(followed);
+            }
         }
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));
         caveats = caveatsOf(model);
@@ -63,6 +69,8 @@ void run(const FitArguments& options, Terminal& terminal)
     printParameters(model, terminal);
     terminal.say("");
     printErrors(comparison, terminal);
+    if (comparison.sectionMoves)
+        terminal.say(wrapped(told(*comparison.sectionMoves)));
     terminal.say("Wrote " + options.out + ".");
     document["take"] = options.take;
     document["model"] = options.out;

@@ -2,6 +2,8 @@
 // Converters take channels one after the other, and no parameter of a driver is that.
 #include "Bench/Bench.h"
 #include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Loudspeaker/SensorLag.h"
@@ -98,6 +100,31 @@ TEST_CASE("Channels that are taken together are found so", "[lag]")
     // no channel tells these
     CHECK(!lagParameter(found.model, Quantity::acceleration).free);
     CHECK(toldOfPath(found.model).size() < found.model.path.parameters.size());
+}
+
+TEST_CASE("Laws are fed the motion as it is, however late its channels are taken", "[lag]")
+{
+    auto setup = smallSetup();
+    setup.noiseDb = -90.0;
+    auto record = makeRecord(bench::measure(bench::Loudspeaker {}, setup));
+    auto model = startModel(record);
+    model = withEffect(std::move(model), effectNamed("stiffness"), visitedRange(model, record));
+    model.components.back().parameters[1].value = 0.2 * model.baseParameter("K").value;
+    for (const auto quantity : {Quantity::current, Quantity::displacement})
+        model.path.parameters[static_cast<std::size_t>(*lagPlace(quantity))].value = 40e-6;  // 0.05 rad at 200 Hz
+    const auto sections = estimationSections(record);
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = true;
+    run.substeps = 4;
+    const auto played = outputError(model, record, sections, {}, run);
+    for (std::size_t s = 0; s < sections.size(); ++s)
+        record.sections[sections[s]].measured = played[s].predicted;
+    for (const auto& fit : quickError(model, record, sections, {}, run))
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            INFO(name(record.channels[c]));
+            CHECK(10.0 * std::log10(fit.power[c].error / fit.power[c].measured) < -70.0);
+        }
 }
 
 TEST_CASE("A model file from before lags were known is read with none", "[lag]")

@@ -39,9 +39,11 @@ RateConverter::RateConverter(double from, double to, double highest)
     from_ /= common;
     to_ /= common;
     // Cycles an input sample.
-    const double share = std::min(1.0, to / from), known = highest / from;
-    const bool knowsLess = 2.0 * known < stop * share;
-    const double first = knowsLess ? known : flat * share, last = knowsLess ? 2.0 * known : stop * share,
+    constexpr double longest = 0.02;  // s, of the reach
+    const double share = std::min(1.0, to / from), known = highest / from,
+                 unknown = std::max(2.0 * known, known + reachTimesWidth / (longest * from));
+    const bool knowsLess = unknown < stop * share;
+    const double first = knowsLess ? known : flat * share, last = knowsLess ? unknown : stop * share,
                  cut = 0.5 * (first + last);
     unchanged_ = from_ == to_ && !knowsLess;
     if (unchanged_) {

@@ -163,6 +163,7 @@ public:
             record_.units.insert(record_.units.begin(), "A");
         }
         record_.wanderDb.assign(record_.channels.size(), std::nullopt);
+        record_.sectionsDrift = false;
         for (auto& s : record_.sections) {  // nothing is compared
             s.measured.assign(record_.channels.size(), Spectrum(s.window / 2 + 1, 0.0));
             s.deviation.assign(record_.channels.size(), std::vector<double>(s.window / 2 + 1, 1.0));

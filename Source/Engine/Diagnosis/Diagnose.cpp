@@ -154,9 +154,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
         diagnosis.sentence +=
             " On what was held out the error is larger, but no larger than the standard errors of the "
             "parameters let one expect: more realizations would tell them better.";
-    if (before.sectionMoves)
-        diagnosis.sentence += " Between the sections of the take " + inWords(*before.sectionMoves)
-                              + ", as of a suspension that is worked and a coil that warms; that is followed.";
+    if (before.sectionMoves && before.sectionMoves->areSmall() && diagnosis.verdict != Verdict::missingEffect)
+        diagnosis.sentence += " " + told(*before.sectionMoves);
     progress.at(1.0, "diagnosed");
     return diagnosis;
 }

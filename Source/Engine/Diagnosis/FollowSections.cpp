@@ -21,29 +21,34 @@ SectionMoves movesOf(const std::vector<SectionFit>& fits)
     return {range(&SectionDrift::Amount::stiffness), range(&SectionDrift::Amount::resistance)};
 }
 
-std::string inWords(const SectionMoves& moves)
+std::string told(const SectionMoves& moves)
 {
-    return "the stiffness moves by " + figure(100.0 * moves.stiffness, "%.2g") + " % and the resistance by "
-           + figure(100.0 * moves.resistance, "%.2g") + " %";
+    const auto percent = [](double share) { return figure(100.0 * share, "%.2g") + " %"; };
+    return "Between the sections of the take the stiffness moves by " + percent(moves.stiffness)
+           + (moves.resistance > 0.0 ? " and the resistance by " + percent(moves.resistance) : "")
+           + ", as where a suspension is worked or a coil warms. The comparison follows that.";
 }
 
-bool sectionsExplain(Model model, const Record& record, int substeps)
+bool sectionsExplain(Model model, const Record& record, int substeps, const Progress& progress)
 {
+    constexpr double most = 0.75, clearly = 1.3;  // of what is left over the noise without a fit; times less after it
     if (record.sectionsDrift || !record.noiseKnown || !hasPeriods(record) || record.levels.size() < 2)
         return false;
-    const auto plain = tryCompare(model, record, {substeps, false});
+    const auto plain = tryCompare(model, record, {substeps, false}, progress.silent());
     if (!plain || isNoise(*plain))
         return false;
     auto followed = record;
     followed.sectionsDrift = true;
+    const auto glimpse = tryCompare(model, followed, {substeps, false}, progress.silent());
+    if (!glimpse || glimpse->chiSquaredPerValue - sureNoise > most * (plain->chiSquaredPerValue - sureNoise))
+        return false;
     FitOptions options;
     options.substeps = substeps;
     options.fedGradient = true;
     options.search = {10, 1e-3};
-    if (!fitFed(model, followed, estimationSections(followed), options).usable())
+    if (!fitFed(model, followed, estimationSections(followed), options, progress.silent()).usable())
         return false;
-    const auto rest = tryCompare(model, followed, {substeps, false});
-    constexpr double clearly = 1.3;  // times less
+    const auto rest = tryCompare(model, followed, {substeps, false}, progress.silent());
     return rest && rest->sectionMoves && rest->sectionMoves->areSmall()
            && (isNoise(*rest) || rest->chiSquaredPerValue < std::min(atNoise, plain->chiSquaredPerValue / clearly));
 }

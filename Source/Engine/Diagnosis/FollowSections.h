@@ -3,6 +3,7 @@
 
 #include "Engine/Estimate/Record.h"
 #include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Progress.h"
 
 #include <string>
 #include <vector>
@@ -12,20 +13,20 @@ namespace excursion {
 /// By how much the stiffness and the resistance move between the sections of a take, shares of K and Re: the largest
 /// minus the least.
 struct SectionMoves {
-    double stiffness = 0.0, resistance = 0.0;
+    double stiffness = 0.0, resistance = 0.0;  ///< the latter zero without a coil
 
-    /// No more than a suspension that is worked, or a coil, does unnoticed: 3 % and 0.5 %. A larger move is an effect.
+    /// At most 3 % and 0.5 %: what a worked suspension and a warm coil do unnoticed. A larger move is an effect.
     bool areSmall() const { return stiffness < 0.03 && resistance < 0.005; }
 };
 
 SectionMoves movesOf(const std::vector<SectionFit>&);
 
-/// "the stiffness moves by 0.4 % and the resistance by 0.1 %"
-std::string inWords(const SectionMoves&);
+/// "Between the sections of the take the stiffness moves by 0.4 % and the resistance by 0.1 %, ...": a sentence.
+std::string told(const SectionMoves&);
 
 /// Whether a take that leaves more leaves noise, or nearly so, once small moves between its sections are followed
 /// (Record::sectionsDrift) by the model, fitted again. Not of a record in which they are, nor of one without several
 /// levels and a known noise.
-bool sectionsExplain(Model, const Record&, int substeps = 0);
+bool sectionsExplain(Model, const Record&, int substeps = 0, const Progress& = {});
 
 }  // namespace excursion

@@ -325,6 +325,8 @@ std::optional<Grown> grown(const Model& base, const Record& record, WholeSearch&
     whole.model = base;
     if (!grow(whole, base, record, search, known, progress.part(0.0, 0.7)))
         return std::nullopt;
+    if (whole.sectionsDrift)
+        return whole;
     if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
         auto fitted = whole.model;
         if (const auto summary = search.fit(fitted, progress.part(0.8, 0.82)); summary.usable()) {

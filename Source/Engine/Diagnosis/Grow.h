@@ -15,7 +15,8 @@ struct Grown {
     Model model;
     FitSummary fit;
     Waypoints path;
-    /// nothing is left but small moves between the sections of the take (WholeSearch::leftOfSections())
+    /// small moves between the sections of the take (WholeSearch::leftOfSections()) explain what is left, nearly or all
+    /// of it, better than more effects
     bool sectionsDrift = false;
 };
 

@@ -177,7 +177,12 @@ bool Improvement::addTogether(const Progress& progress)
     }
     if (rungs.empty())
         return false;
+    const auto* record = std::get_if<Record>(&data);
+    const bool followed = record && record->sectionsDrift;
     rungs.back() = judged(std::move(rungs.back()), data, progress.part(0.8, 1.0));
+    if (record && record->sectionsDrift != followed)
+        for (std::size_t n = 0; n + 1 < rungs.size(); ++n)
+            rungs[n].comparison = compareAsFitted(rungs[n], *record);
     use(std::move(data), ladder_.rungs.size() - 1, progress.silent());  // the last one comes again, with its diagnosis
     for (auto& rung : rungs)
         keep(std::move(rung));
@@ -226,6 +231,13 @@ Improvement::Together Improvement::together(Record& record, const Progress& prog
     if (whole.coupling > 0.0)
         return {{}, whole.coupling};
     const auto& named = base.diagnosis.ranking;
+    if (whole.votes.empty() && whole.sectionsDrift && whole.fit.usable()) {  // nothing but these moves was missing
+        record.sectionsDrift = true;
+        base.model = whole.model;
+        base.fit = whole.fit;
+        base.comparison = compareAsFitted(base, record);
+        return {{std::move(base)}, 0.0};
+    }
     // One effect that is known is added by its own trial.
     if (whole.votes.empty()
         || (oneIsKnown && whole.votes.size() == 1 && whole.votes.begin()->first == named.front().effect))
@@ -275,7 +287,8 @@ void Improvement::add(const std::string& id, const Progress& progress)
     keep(std::move(rung));
 }
 
-/// Compares and diagnoses all rungs anew where the noise is another; one that runs away there stays as it was.
+/// Compares and diagnoses all rungs anew where the noise is another, or sections are followed; one that runs away there
+/// stays as it was.
 void Improvement::use(Data data, std::size_t kept, const Progress& silent)
 {
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
@@ -306,7 +319,7 @@ Rung Improvement::judged(Rung rung, Data& data, const Progress& progress) const
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     auto* record = std::get_if<Record>(&data);
     const bool isUnknown = record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable();
-    const bool moves = isUnknown && sectionsExplain(rung.model, *record, rung.fit.substeps);
+    const bool moves = isUnknown && sectionsExplain(rung.model, *record, rung.fit.substeps, progress);
     if (moves)
         record->sectionsDrift = true;
     if (isUnknown
@@ -316,6 +329,8 @@ Rung Improvement::judged(Rung rung, Data& data, const Progress& progress) const
             run.usable()) {
             rung.model = std::move(better);
             rung.fit = run;
+            judge(progress.part(0.7, 1.0));
+        } else if (moves) {
             judge(progress.part(0.7, 1.0));
         }
     }

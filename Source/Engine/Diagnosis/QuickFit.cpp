@@ -25,6 +25,7 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
     OutputErrorOptions run;
     run.gradient = false;
     run.played = options.fedGradient;
+    run.sectionsDrift = options.sectionsDrift;
     run.substeps = options.substeps;
     run.threads = options.threads;
     return run;

@@ -268,10 +268,16 @@ std::vector<ResidualCurve> curvesOverTime(const Model& model, const Record& reco
     for (const auto n : sectionsInTime(record)) {
         const auto& section = record.sections[n];
         const auto lack = lacking.in(section, fits[n]);
-        add(stiffness, section.middle, multipleOf(displacementOf(record, section, section.measured), lack.force));
-        if (model.electrical())
-            add(resistance, section.middle,
-                multipleOf(section.measured[*record.channelIndex(Quantity::current)], lack.voltage));
+        // What the comparison follows is no part of what is left.
+        const auto& followed = fits[n].drift;
+        auto softer = multipleOf(displacementOf(record, section, section.measured), lack.force);
+        softer.value += followed.stiffness * model.baseParameter("K").value;
+        add(stiffness, section.middle, softer);
+        if (model.electrical()) {
+            auto warmer = multipleOf(section.measured[*record.channelIndex(Quantity::current)], lack.voltage);
+            warmer.value += followed.resistance * model.baseParameter("Re").value;
+            add(resistance, section.middle, warmer);
+        }
     }
     std::vector<ResidualCurve> curves;
     const auto keep = [&](ResidualCurve& curve, const char* base) {

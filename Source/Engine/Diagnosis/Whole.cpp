@@ -41,7 +41,9 @@ std::optional<Model> fittedToLoudest(const Model& model, const Record& record, c
     if (sections.size() == every.size() || hasLaws(model))
         return std::nullopt;
     auto loud = model;
-    if (!quickFit(loud, record, sections, options).usable())
+    auto alone = record;
+    alone.sectionsDrift = false;  // its reference would be missing
+    if (!quickFit(loud, alone, sections, options).usable())
         return std::nullopt;
     return loud;
 }
@@ -62,7 +64,7 @@ Candidate refined(Whole whole, const Record& record, WholeSearch& search, const 
                   const Progress& progress)
 {
     Candidate found {std::move(whole), {}};
-    if (!found.whole.fit.usable())
+    if (!found.whole.fit.usable() || found.whole.sectionsDrift)
         return found;
     search.chooseResiduals(found.whole.model);
     if (search.left(found.whole.model).isNoise())  // what is not needed would only hold up the refinement
@@ -210,8 +212,13 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     }
     if (whole.sectionsDrift) {
         nearer.sectionsDrift = true;
-        whole = closely(std::move(whole), progress.part(0.8, 1.0));
-        whole.sectionsDrift = true;
+        auto followed = closely(whole, progress.part(0.8, 1.0));
+        // Moves may have come to stand for an effect that went.
+        const auto reached = tryCompare(followed.model, nearer, {followed.fit.substeps, false}, progress.silent());
+        const bool small = reached && reached->sectionMoves && reached->sectionMoves->areSmall();
+        if (small)
+            whole = std::move(followed);
+        whole.sectionsDrift = small;
     }
     return whole;
 }

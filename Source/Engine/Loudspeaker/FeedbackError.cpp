@@ -245,8 +245,10 @@ Record withoutLaws(const Model& model, const Record& record, unsigned threads)
     run.gradient = false;
     run.spectra = true;
     run.threads = threads;
-    const auto with = quickError(model, record, every, {}, run), without = quickError(still, record, every, {}, run);
     Record result = record;
+    result.sectionsDrift = false;  // what the linear part alone would follow is not what moved
+    const auto with = quickError(model, result, every, {}, run), without = quickError(still, result, every, {}, run);
+    result.sectionsDrift = record.sectionsDrift;
     for (std::size_t s = 0; s < every.size(); ++s) {
         if (!with[s].finite || !without[s].finite)
             return record;

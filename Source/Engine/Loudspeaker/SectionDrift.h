@@ -19,8 +19,8 @@ namespace excursion {
 ///     (kappa, rho) = -M^-1 a^T r,   M = a^T a + diag(1/sigma^2),
 ///     r <- r + a (kappa, rho),   J <- J - a M^-1 a^T J,
 /// so that slopes are those of a model whose drift follows (variable projection, Golub & Pereyra 1973, SIAM J. Numer.
-/// Anal. 10). sigma: 2 % of K, 0.5 % of Re. K and Re of the model are those of the quietest level, where nothing is
-/// worked yet, so the drift is told of the others.
+/// Anal. 10; what the moves themselves cost is left out, as it is next to nothing). sigma: 2 % of K, 0.5 % of Re. K and
+/// Re of the model are those of the quietest level, where nothing is worked yet, so the drift is told of the others.
 class SectionDrift {
 public:
     using Spectrum = std::vector<std::complex<double>>;

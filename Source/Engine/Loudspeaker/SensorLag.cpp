@@ -29,6 +29,13 @@ double lagOf(const Model& model, Quantity quantity)
     return place ? model.path.parameters[static_cast<std::size_t>(*place)].value : 0.0;
 }
 
+Model withoutLags(Model model)
+{
+    for (const auto quantity : lagging)
+        model.path.parameters[static_cast<std::size_t>(*lagPlace(quantity))].value = 0.0;
+    return model;
+}
+
 void freeLags(Model& model, const Record& record)
 {
     constexpr double turn = 0.05, most = 10.0;  // rad; of the prior
@@ -37,9 +44,9 @@ void freeLags(Model& model, const Record& record)
         p.free = hasPeriods(record) && record.noiseKnown && record.channelIndex(quantity) && record.bandLow > 0.0;
         if (!p.free)
             continue;
-        // A motion falls off with frequency.
-        const double highest = quantity == Quantity::current ? record.bandHigh
-                                                             : std::sqrt(record.bandLow * record.bandHigh);
+        // Displacement and velocity fall off with frequency.
+        const bool falls = quantity == Quantity::displacement || quantity == Quantity::velocity;
+        const double highest = !falls ? record.bandHigh : std::sqrt(record.bandLow * record.bandHigh);
         p.prior = turn / (2.0 * std::numbers::pi * highest);
         p.lower = -most * p.prior;
         p.upper = most * p.prior;

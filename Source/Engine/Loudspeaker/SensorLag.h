@@ -14,7 +14,7 @@ namespace excursion {
 // are not alike, a laser whose latency is declared in round numbers. A hundredth of a sample turns the phase of a
 // current at 2 kHz by 0.003 rad, -51 dB, which no other parameter of a driver can be. What is seen of a quantity is
 //     Y(w) exp(-j w tau),
-// with tau a parameter of the path. What turns the phase by more than the check of a take notices is told there. The
+// with tau a parameter of the path. A larger lag is reported by the check of the take. The
 // sound has its own parameter, as it is on the way much longer.
 
 /// The place of a quantity's lag among the parameters of the path; none of a pressure or a drive.
@@ -22,6 +22,9 @@ std::optional<Eigen::Index> lagPlace(Quantity);
 
 /// s; zero where there is no such parameter.
 double lagOf(const Model&, Quantity);
+
+/// The model with sensors that tell everything at once.
+Model withoutLags(Model);
 
 /// Lets the lags of the channels of a record be fitted that can tell them: that of periods with a known noise. They are
 /// expected to turn the phase by no more than 0.05 rad: of a current at the end of the band, of a motion in its middle.

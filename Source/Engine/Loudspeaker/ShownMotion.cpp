@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/ShownMotion.h"
 
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Take/Motion.h"
 
@@ -32,8 +33,17 @@ struct Told {
     bool isSure() const { return std::norm(value) > sure * sure * variance; }
 };
 
+/// A measured line as it is when its channel is not taken late.
+Complex onTime(const Model& model, const Record& record, const Section& section, std::size_t channel, std::size_t line)
+{
+    const double tau = lagOf(model, record.channels[channel]);
+    const auto measured = section.measured[channel][line];
+    return tau == 0.0 ? measured
+                      : measured * std::polar(1.0, 2.0 * std::numbers::pi * record.frequency(section, line) * tau);
+}
+
 /// The mean of a line of displacement over the channels that tell it.
-Told displacementAt(const Record& record, const Section& section, std::size_t line)
+Told displacementAt(const Model& model, const Record& record, const Section& section, std::size_t line)
 {
     const Complex s(0.0, 2.0 * std::numbers::pi * record.frequency(section, line));
     Complex sum = 0.0;
@@ -41,7 +51,7 @@ Told displacementAt(const Record& record, const Section& section, std::size_t li
     for (std::size_t c = 0; c < record.channels.size(); ++c)
         if (const auto order = integrationsToDisplacement(record.channels[c])) {
             const auto scale = repeated(s, -*order);
-            const Told told {scale * section.measured[c][line],
+            const Told told {scale * onTime(model, record, section, c, line),
                              std::norm(scale) * section.deviation[c][line] * section.deviation[c][line]};
             if (told.isSure()) {
                 sum += told.value / told.variance;
@@ -67,7 +77,7 @@ std::vector<double> played(const Spectrum& spectrum, std::size_t N, int derivati
 
 }  // namespace
 
-ShownMotion shownMotion(const Record& record, const Section& section, const Spectrum& current,
+ShownMotion shownMotion(const Model& model, const Record& record, const Section& section, const Spectrum& current,
                         const Spectrum& displacement)
 {
     const std::size_t N = section.window;
@@ -76,9 +86,10 @@ ShownMotion shownMotion(const Record& record, const Section& section, const Spec
     const auto [first, last] = record.lineRange(section);
     for (std::size_t k = first; k <= last; ++k) {
         if (coil)
-            if (const Told told {section.measured[*coil][k], std::pow(section.deviation[*coil][k], 2)}; told.isSure())
+            if (const Told told {onTime(model, record, section, *coil, k), std::pow(section.deviation[*coil][k], 2)};
+                told.isSure())
                 I[k] = told.value;
-        if (const auto told = displacementAt(record, section, k); told.isSure())
+        if (const auto told = displacementAt(model, record, section, k); told.isSure())
             X[k] = told.value;
     }
     const auto motion = [&](const Spectrum& of, int derivative) {

@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/ShownMotions.h"
 
 #include "Engine/Loudspeaker/FedLaws.h"
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
@@ -20,9 +21,10 @@ PathsByWindow pathsToMotion(const Model& model, const Record& record, const std:
                             unsigned threads)
 {
     PathsByWindow paths;
+    const auto onTime = withoutLags(model);
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window))
-            paths[section.window] = pathsOf(model, {Quantity::current, Quantity::displacement}, 0,
+            paths[section.window] = pathsOf(onTime, {Quantity::current, Quantity::displacement}, 0,
                                             record.lineRange(section).second,
                                             record.sampleRate / static_cast<double>(section.window), false, threads);
     return paths;
@@ -48,7 +50,7 @@ ShownMotions shownBy(const PathsByWindow& paths, const Model& model, const Recor
                                  + path.fromForce[q].value[k] * fed.force[k];
             expected[q][0] = expected[q][0].real();
         }
-        motions[s] = shownMotion(record, section, expected[0], expected[1]);
+        motions[s] = shownMotion(model, record, section, expected[0], expected[1]);
         return true;
     });
     return motions;
