@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/Eigenvalues.h"
 
-#include "Engine/Numerics/StateUnits.h"
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -10,6 +8,20 @@
 
 namespace excursion {
 namespace {
+
+void balance(Eigen::MatrixXd& A)
+{
+    constexpr int sweeps = 3;
+    for (int n = 0; n < sweeps; ++n)
+        for (Eigen::Index k = 0; k < A.rows(); ++k) {
+            const double own = std::abs(A(k, k)), into = A.row(k).lpNorm<1>() - own, from = A.col(k).lpNorm<1>() - own;
+            const double unit = std::sqrt(from / into);
+            if (!(std::isfinite(unit) && unit > 0.0))
+                continue;
+            A.row(k) *= unit;
+            A.col(k) /= unit;
+        }
+}
 
 /// Not less than max |lambda|.
 double largestSum(const Eigen::MatrixXd& A)
@@ -34,7 +46,8 @@ bool isWithin(const Eigen::MatrixXd& A, double radius)
         return true;
     constexpr int squarings = 16;
     constexpr double beyond = 1e6;  // farther on rounding errors would tell
-    Eigen::MatrixXd power = inUnits(A / radius, stateUnits(A)), squared;
+    Eigen::MatrixXd power = A / radius, squared;
+    balance(power);
     for (int n = 0; n <= squarings; ++n) {
         const double most = largestSum(power);
         if (most <= 1.0)

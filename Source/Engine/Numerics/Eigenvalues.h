@@ -13,8 +13,8 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// Whether max |lambda| <= radius. Powers A^N, N = 2, 4, 8 ..., tell it in a small part of the time of the eigenvalues:
 ///     |tr A^N| / n <= max |lambda|^N <= |A^N|,
-/// in balanced units (stateUnits()). The eigenvalues decide where powers do not: about the radius itself. Not of a
-/// matrix that is not finite.
+/// in units in which what leads to a state weighs as much as what it leads to (Osborne 1960, J. ACM 7). The eigenvalues
+/// decide where powers do not: about the radius itself. Not of a matrix that is not finite.
 bool isWithin(const Eigen::MatrixXd& A, double radius);
 
 /// A vectors = vectors diag(values): n values, and n x n vectors of length 1 as columns.
