@@ -271,9 +271,11 @@ TEST_CASE("Loops whose rates are free follow a moving coil closer than any that 
     const auto operatingRange = visitedRange(model, record, 10);
     model = withEffect(withEffect(model, effectNamed("eddy-currents"), operatingRange, 1),
                        effectNamed("inductance-position"), operatingRange);
+    FitOptions asGiven;  // without lags of the sensors, which follow a part of what fixed loops leave
+    asGiven.asGiven = true;
     const auto fitTwice = [&] {  // the rate of a loop without a share joins a search at its next begin
-        fit(model, record, estimationSections(record));
-        return fit(model, record, estimationSections(record)).chiSquaredPerValue;
+        fit(model, record, estimationSections(record), asGiven);
+        return fit(model, record, estimationSections(record), asGiven).chiSquaredPerValue;
     };
     auto& law = model.components.back().parameters;
     const auto isRate = [](const Parameter& p) { return p.relaxed && p.name.front() == 'r'; };

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Engine/Diagnosis/ErrorLevel.h"
-#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Diagnosis/RestShift.h"
+#include "Engine/Diagnosis/SectionMoves.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Estimate/Record.h"
 #include "Engine/Progress.h"

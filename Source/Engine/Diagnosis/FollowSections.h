@@ -2,27 +2,10 @@
 #pragma once
 
 #include "Engine/Estimate/Record.h"
-#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Model.h"
 #include "Engine/Progress.h"
 
-#include <string>
-#include <vector>
-
 namespace excursion {
-
-/// By how much the stiffness and the resistance move between the sections of a take, shares of K and Re: the largest
-/// minus the least.
-struct SectionMoves {
-    double stiffness = 0.0, resistance = 0.0;  ///< the latter zero without a coil
-
-    /// At most 3 % and 0.5 %: what a worked suspension and a warm coil do unnoticed. A larger move is an effect.
-    bool areSmall() const { return stiffness < 0.03 && resistance < 0.005; }
-};
-
-SectionMoves movesOf(const std::vector<SectionFit>&);
-
-/// "Between the sections of the take the stiffness moves by 0.4 % and the resistance by 0.1 %, ...": a sentence.
-std::string told(const SectionMoves&);
 
 /// Whether a take that leaves more leaves noise, or nearly so, once small moves between its sections are followed
 /// (Record::sectionsDrift) by the model, fitted again. Not of a record in which they are, nor of one without several

@@ -2,9 +2,9 @@
 #include "Engine/Diagnosis/WholeSearch.h"
 
 #include "Engine/Diagnosis/FindAnew.h"
-#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
+#include "Engine/Diagnosis/SectionMoves.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 
