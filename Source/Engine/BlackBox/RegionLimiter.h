@@ -11,9 +11,9 @@ namespace excursion {
 
 /// The factor that keeps the linear part of a black box in the region of its fit, and the input within the peak of the
 /// fit: nobody has measured what is beyond. The linear part hears the band of the fit alone, as above it the model is
-/// an accident of the fit. It gets each sample before the sample is due. A low tone that starts
-/// suddenly, far too loud, nevertheless takes the loudspeaker out of the region for its first half period, because the
-/// system has a memory. The peak of the input is always kept. Protection handles the excursion limit.
+/// an accident of the fit. It gets each sample before the sample is due. A low tone that starts suddenly, far too loud,
+/// nevertheless takes the loudspeaker out of the region for its first half period, because the system has a memory. The
+/// peak of the input is always kept. Protection handles the excursion limit.
 class RegionLimiter {
 public:
     RegionLimiter(const BlackBox&, const Region&, double sampleRate);

@@ -79,8 +79,8 @@ std::optional<Comparison> tryCompare(const Model&, const Record&, const CompareO
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
 
 /// Whether what the periods drift is no noise to a model: it warms, or it leaves less in some channel than they
-/// scatter, which no model can if that is noise. Never once the drift is out of
-/// the noise (takeDriftOutOfNoise()).
+/// scatter, which no model can if that is noise. Never once the drift is out of the noise
+/// (takeDriftOutOfNoise()).
 bool followsDrift(const Model&, const Record&);
 
 /// A channel over time, measured and modelled, in the compared window, in the channel's unit.

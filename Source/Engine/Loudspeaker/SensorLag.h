@@ -14,8 +14,8 @@ namespace excursion {
 // are not alike, a laser whose latency is declared in round numbers. A hundredth of a sample turns the phase of a
 // current at 2 kHz by 0.003 rad, -51 dB, which no other parameter of a driver can be. What is seen of a quantity is
 //     Y(w) exp(-j w tau),
-// with tau a parameter of the path. A larger lag is reported by the check of the take. The
-// sound has its own parameter, as it is on the way much longer.
+// with tau a parameter of the path. A larger lag is reported by the check of the take. The sound has its own parameter,
+// as it is on the way much longer.
 
 /// The place of a quantity's lag among the parameters of the path; none of a pressure or a drive.
 std::optional<Eigen::Index> lagPlace(Quantity);

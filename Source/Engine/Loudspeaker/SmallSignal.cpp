@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/SmallSignal.h"
 
-#include "Engine/Loudspeaker/SensorLag.h"
-
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ArrowResolvent.h"
 #include "Engine/Loudspeaker/Dynamics.h"
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/Parallel.h"
 
