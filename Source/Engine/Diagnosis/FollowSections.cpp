@@ -9,10 +9,15 @@
 
 namespace excursion {
 
+bool tellsMoves(const Record& record)
+{
+    return !record.sectionsDrift && record.noiseKnown && hasPeriods(record) && record.levels.size() > 1;
+}
+
 bool sectionsExplain(Model model, const Record& record, int substeps, const Progress& progress)
 {
     constexpr double most = 0.75, clearly = 1.3;  // of what is left over the noise without a fit; times less after it
-    if (record.sectionsDrift || !record.noiseKnown || !hasPeriods(record) || record.levels.size() < 2)
+    if (!tellsMoves(record))
         return false;
     const auto plain = tryCompare(model, record, {substeps, false}, progress.silent());
     if (!plain || isNoise(*plain))

@@ -7,9 +7,12 @@
 
 namespace excursion {
 
-/// Whether a take that leaves more leaves noise, or nearly so, once small moves between its sections are followed
-/// (Record::sectionsDrift) by the model, fitted again. Not of a record in which they are, nor of one without several
-/// levels and a known noise.
+/// Whether a record can tell moves between its sections, and does not have them followed yet (Record::sectionsDrift):
+/// it has periods, several levels and a known noise.
+bool tellsMoves(const Record&);
+
+/// Whether a take that leaves more leaves noise, or nearly so, once small moves between its sections are followed by
+/// the model, fitted again. Not where tellsMoves() denies it.
 bool sectionsExplain(Model, const Record&, int substeps = 0, const Progress& = {});
 
 }  // namespace excursion

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/WholeSearch.h"
 
 #include "Engine/Diagnosis/FindAnew.h"
+#include "Engine/Diagnosis/FollowSections.h"
 #include "Engine/Diagnosis/LawDegrees.h"
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/SectionMoves.h"
@@ -96,7 +97,7 @@ Left WholeSearch::left(const Model& model, bool played) const
 
 Left WholeSearch::leftOfSections(const Model& model) const
 {
-    if (record_.sectionsDrift || !record_.noiseKnown || !hasPeriods(record_) || record_.levels.size() < 2)
+    if (!tellsMoves(record_))
         return {};
     auto followed = test_.run();
     followed.gradient = false;
