@@ -12,8 +12,8 @@ namespace excursion {
 /// window, read from a table of its phases with linear interpolation. Output k lies exactly at the time of input k
 /// from/to, however long it runs. Flat to 0.41 of the lower of the two rates, -90 dB from 0.5 of it on; or, for a
 /// listener that knows less, flat to a highest frequency and -90 dB from twice that on (from further up where that
-/// would take more than 20 ms). If the rates are equal and the
-/// highest frequency leaves nothing out, the signal passes unchanged.
+/// would take more than 20 ms). If the rates are equal and the highest frequency leaves nothing out, the signal passes
+/// unchanged.
 ///
 /// libsoxr, which resamples records elsewhere in this project, allocates as it runs and delivers output in lumps. An
 /// audio thread can use neither.

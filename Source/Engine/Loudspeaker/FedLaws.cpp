@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/FedLaws.h"
 
+#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -139,19 +140,35 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     return paths;
 }
 
-std::map<std::size_t, Paths> pathsByWindow(const Model& model, const Record& record,
-                                           const std::vector<std::size_t>& sections, bool withGradient,
-                                           unsigned threads)
+namespace {
+
+PathsByWindow pathsByWindow(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                            const std::vector<Quantity>& quantities, bool fromZero, bool withGradient, unsigned threads)
 {
-    std::map<std::size_t, Paths> paths;
+    PathsByWindow paths;
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
             const auto [first, last] = record.lineRange(section);
-            paths[section.window] = pathsOf(model, record.channels, first, last,
+            paths[section.window] = pathsOf(model, quantities, fromZero ? 0 : first, last,
                                             record.sampleRate / static_cast<double>(section.window), withGradient,
                                             threads);
         }
     return paths;
+}
+
+}  // namespace
+
+PathsByWindow pathsToChannels(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                              bool withGradient, unsigned threads)
+{
+    return pathsByWindow(model, record, sections, record.channels, false, withGradient, threads);
+}
+
+PathsByWindow pathsToMotion(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                            unsigned threads)
+{
+    return pathsByWindow(withoutLags(model), record, sections, {Quantity::current, Quantity::displacement}, true, false,
+                         threads);
 }
 
 LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,

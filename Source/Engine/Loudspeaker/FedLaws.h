@@ -30,9 +30,16 @@ struct Paths {
 Paths pathsOf(const Model&, const std::vector<Quantity>&, std::size_t first, std::size_t last, double resolution,
               bool withGradient, unsigned threads = 1);
 
-/// pathsOf() the record's channels for each window of these sections.
-std::map<std::size_t, Paths> pathsByWindow(const Model&, const Record&, const std::vector<std::size_t>& sections,
-                                           bool withGradient, unsigned threads = 1);
+/// By window, in samples.
+using PathsByWindow = std::map<std::size_t, Paths>;
+
+/// pathsOf() the record's channels on the compared lines of each window of these sections.
+PathsByWindow pathsToChannels(const Model&, const Record&, const std::vector<std::size_t>& sections, bool withGradient,
+                              unsigned threads = 1);
+
+/// The same of current and displacement, in this order, of the cone itself and from 0 Hz on.
+PathsByWindow pathsToMotion(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                            unsigned threads = 1);
 
 /// The contributions of all laws for the motion of one section.
 struct Fed {

@@ -221,7 +221,7 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
             wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
-    const auto paths = pathsByWindow(model, record, sections, gradient, options.threads);
+    const auto paths = pathsToChannels(model, record, sections, gradient, options.threads);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];

@@ -219,8 +219,8 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     const auto from = startStates(model, record, sections, leadIn, gradient, options.threads);
     const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
     const auto paths = record.sectionsDrift || wanted.sectionsDrift
-                           ? pathsByWindow(model, record, sections, false, options.threads)
-                           : std::map<std::size_t, Paths> {};
+                           ? pathsToChannels(model, record, sections, false, options.threads)
+                           : PathsByWindow {};
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
         const auto path = paths.find(record.sections[sections[n]].window);

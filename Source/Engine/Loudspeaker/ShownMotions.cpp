@@ -2,33 +2,15 @@
 #include "Engine/Loudspeaker/ShownMotions.h"
 
 #include "Engine/Loudspeaker/FedLaws.h"
-#include "Engine/Loudspeaker/SensorLag.h"
 #include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 namespace excursion {
 
 namespace {
-
-using PathsByWindow = std::map<std::size_t, Paths>;
-
-/// The responses of current and displacement, in this order, for every window of the sections.
-PathsByWindow pathsToMotion(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                            unsigned threads)
-{
-    PathsByWindow paths;
-    const auto onTime = withoutLags(model);
-    for (const auto s : sections)
-        if (const auto& section = record.sections[s]; !paths.contains(section.window))
-            paths[section.window] = pathsOf(onTime, {Quantity::current, Quantity::displacement}, 0,
-                                            record.lineRange(section).second,
-                                            record.sampleRate / static_cast<double>(section.window), false, threads);
-    return paths;
-}
 
 /// shownMotions() by paths that are known.
 ShownMotions shownBy(const PathsByWindow& paths, const Model& model, const Record& record,
