@@ -7,7 +7,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Loudspeaker/Laws.h"
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/Summary.h"
 
 #include <algorithm>

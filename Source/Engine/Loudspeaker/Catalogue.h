@@ -23,7 +23,7 @@ const Effect& mechanicalBase();
 const Effect& baseNamed(std::string_view id);
 
 /// The path from the cone to the microphone, which every driver also has: area += Sd, acceleration += dv/dt, lateness
-/// += tau. With it stand the lags of the other channels (SensorLag.h).
+/// += tau. With it stand the responses of the other sensors (SensorResponse.h).
 const Effect& radiation();
 
 }  // namespace excursion

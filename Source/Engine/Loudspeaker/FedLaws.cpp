@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/FedLaws.h"
 
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -167,7 +167,7 @@ PathsByWindow pathsToChannels(const Model& model, const Record& record, const st
 PathsByWindow pathsToMotion(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                             unsigned threads)
 {
-    return pathsByWindow(withoutLags(model), record, sections, {Quantity::current, Quantity::displacement}, true, false,
+    return pathsByWindow(withoutSensors(model), record, sections, {Quantity::current, Quantity::displacement}, true, false,
                          threads);
 }
 

@@ -7,7 +7,7 @@
 #include "Engine/Loudspeaker/KeptSlopes.h"
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/SearchCoordinates.h"
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorStart.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Validity.h"
 
@@ -239,7 +239,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
 /// Frees what a record can tell, and holds what it cannot.
 void holdUntold(Model& model, const Record& record)
 {
-    freeLags(model, record);
+    freeSensors(model, record);
     // Without a current only laws tell the coil's damping from the suspension's.
     const auto& seen = record.channels;
     const bool current = std::find(seen.begin(), seen.end(), Quantity::current) != seen.end();

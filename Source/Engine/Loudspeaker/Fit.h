@@ -28,7 +28,7 @@ struct FitOptions {
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
                        ///< and nearly as good, for starts and trials; a take without periods is simulated all the same
 
-    /// What is free is the caller's choice. Otherwise lags are free where the record tells them (freeLags()), and Rms
+    /// What is free is the caller's choice. Otherwise sensors are free where the record tells them (freeSensors()), and Rms
     /// is held where, without a current channel, only laws could tell it from the coil's damping and the model has
     /// none.
     bool asGiven = false;

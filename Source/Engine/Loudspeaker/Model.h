@@ -49,7 +49,7 @@ std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& 
 struct Model {
     std::string name;
     std::vector<Component> components;  ///< components.front() is the base
-    Component path;                     ///< radiation(): Sd in m^2 and tau in s; lags of sensors (SensorLag.h)
+    Component path;                     ///< radiation(): Sd in m^2 and tau in s; responses of sensors (SensorResponse.h)
     double microphoneDistance = 1.0;    ///< d, m
     /// of parameterVector(); empty when unknown. Of a model from a file standard errors may be larger than its diagonal
     /// says (widenedCovariance())

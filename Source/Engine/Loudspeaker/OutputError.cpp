@@ -2,7 +2,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include "Engine/Loudspeaker/LawPace.h"
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/Sensors.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
@@ -95,7 +95,7 @@ public:
             }
             if (!fit.finite)
                 return fit;
-            addLags(predicted, J);
+            addSensors(predicted, J);
             if (drift)
                 drift->takeOut(J);
             for (std::size_t c = 0; c < channels; ++c) {
@@ -113,15 +113,24 @@ public:
     }
 
 private:
-    /// The columns of what no state feels: how late the channels are taken.
-    void addLags(const std::vector<Spectrum>& predicted, std::vector<Eigen::MatrixXd>& J) const
+    /// The columns of what no state feels: the responses of the sensors.
+    void addSensors(const std::vector<Spectrum>& predicted, std::vector<Eigen::MatrixXd>& J) const
     {
         const double step = 2.0 * std::numbers::pi * record_.frequency(section_, 1);
         const auto path = firstParameterOf(model_, model_.components.size());
-        for (std::size_t c = 0; c < J.size(); ++c)
-            if (const auto place = lagPlace(record_.channels[c]))
-                if (const auto at = std::find(active_.begin(), active_.end(), path + *place); at != active_.end())
-                    residual_.fill(c, lagSlope(predicted[c], step), J[c].col(at - active_.begin()));
+        for (std::size_t c = 0; c < J.size(); ++c) {
+            const auto sensor = sensorOf(model_, record_.channels[c]);
+            const auto places = sensorPlaces(record_.channels[c]);
+            for (std::size_t p = 0; p < places.size(); ++p) {
+                const auto at = std::find(active_.begin(), active_.end(), path + places[p]);
+                if (at == active_.end())
+                    continue;
+                auto slope = predicted[c];
+                for (std::size_t k = 0; k < slope.size(); ++k)
+                    slope[k] *= sensor.logSlopes({0.0, step * static_cast<double>(k)})[p];
+                residual_.fill(c, slope, J[c].col(at - active_.begin()));
+            }
+        }
     }
 
     bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J, int substeps) const

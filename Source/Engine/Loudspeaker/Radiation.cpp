@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string>
 
 namespace excursion {
 namespace {
 
-/// The cone's acceleration over its area Sd, heard a time of flight tau later; and how late the other channels are
-/// taken (SensorLag.h).
+/// The cone's acceleration over its area Sd, heard a time of flight tau later; and how the other channels are taken
+/// (SensorResponse.h).
 class Radiation final : public EffectOf<Radiation> {
 public:
     Radiation()
@@ -31,9 +32,13 @@ public:
         std::vector<Parameter> own {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false},
                                     {.name = "tau", .unit = "s", .free = false}};
         constexpr double turn = 0.05;  // rad
+        const double end = 2.0 * std::numbers::pi * e.highFrequency;
         for (const char* name : {"tau_i", "tau_x", "tau_v", "tau_a"})
-            own.push_back(
-                {.name = name, .unit = "s", .free = false, .prior = turn / (2.0 * std::numbers::pi * e.highFrequency)});
+            own.push_back({.name = name, .unit = "s", .free = false, .prior = turn / end});
+        for (const std::string of : {"_x", "_v", "_a"}) {
+            own.push_back({.name = "T" + of, .unit = "s", .free = false, .prior = 1.0 / end});
+            own.push_back({.name = "q" + of, .unit = "", .free = false, .prior = 2.0});
+        }
         return own;
     }
     int coefficientCount(const OperatingRange&) const override { return 2; }

@@ -14,8 +14,11 @@ constexpr double stiffnessMoves = 0.02, resistanceMoves = 0.005;  // sigma
 
 bool SectionDrift::mayDrift(const Record& record, const Section& section)
 {
-    return record.levels.size() > 1
-           && section.level != std::min_element(record.levels.begin(), record.levels.end()) - record.levels.begin();
+    const auto quietest = std::min_element(record.levels.begin(), record.levels.end()) - record.levels.begin();
+    const auto reference = std::find_if(record.sections.begin(), record.sections.end(), [&](const Section& s) {
+        return s.level == quietest && !s.validation;
+    });
+    return record.levels.size() > 1 && &section != &*reference;
 }
 
 SectionDrift::SectionDrift(const Model& model, const Record& record, const Residual& residual, const Paths& paths,

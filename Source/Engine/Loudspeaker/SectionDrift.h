@@ -20,7 +20,8 @@ namespace excursion {
 ///     r <- r + a (kappa, rho),   J <- J - a M^-1 a^T J,
 /// so that slopes are those of a model whose drift follows (variable projection, Golub & Pereyra 1973, SIAM J. Numer.
 /// Anal. 10; what the moves themselves cost is left out, as it is next to nothing). sigma: 2 % of K, 0.5 % of Re. K and
-/// Re of the model are those of the quietest level, where nothing is worked yet, so the drift is told of the others.
+/// Re of the model are those of the first section of the quietest level that fits see: there nothing is worked yet, and
+/// what is not told against one section would be told of none.
 class SectionDrift {
 public:
     using Spectrum = std::vector<std::complex<double>>;
@@ -29,7 +30,7 @@ public:
         double stiffness = 0.0, resistance = 0.0;  ///< shares of K and Re
     };
 
-    /// Whether a section of a record may drift: one of another level than the quietest.
+    /// Whether a section of a record may drift: all but that to which the model's K and Re belong.
     static bool mayDrift(const Record&, const Section&);
 
     /// @param paths  of the record's channels

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Sensors.h"
 
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ void Sensors::delay(Spectrum& spectrum) const
 {
     for (auto& line : spectrum)
         line *= gain_;
-    lag(spectrum, step(), later_);
+    passSensor(spectrum, step(), {.lag = later_});
 }
 
 void Sensors::addSpot(Spectrum& spectrum, std::span<const double> spot, int order) const
@@ -91,7 +91,7 @@ Sensors::Spectrum Sensors::seen(Quantity quantity) const
     auto spectrum = fft(run_[motion ? motion->trace : Trace::current]);
     if (motion && spot_)
         addSpot(spectrum, run_[Trace::spot], motion->order);
-    lag(spectrum, step(), lagOf(model_, quantity));
+    passSensor(spectrum, step(), sensorOf(model_, quantity));
     return spectrum;
 }
 
@@ -116,7 +116,7 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
     auto spectrum = fft(row(0));
     if (const auto motion = motionOf(quantity); motion && spot_)
         addSpot(spectrum, row(1), motion->order);
-    lag(spectrum, step(), lagOf(model_, quantity));
+    passSensor(spectrum, step(), sensorOf(model_, quantity));
     return spectrum;
 }
 
@@ -138,7 +138,7 @@ std::vector<double> Sensors::record(Quantity quantity) const
         auto spectrum = seen(quantity);
         return inTime(spectrum);
     }
-    if (lagOf(model_, quantity) != 0.0) {
+    if (!sensorOf(model_, quantity).immediate()) {
         auto spectrum = seen(quantity);
         return inTime(spectrum);
     }

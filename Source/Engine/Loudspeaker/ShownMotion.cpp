@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/ShownMotion.h"
 
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Take/Motion.h"
 
@@ -33,13 +33,15 @@ struct Told {
     bool isSure() const { return std::norm(value) > sure * sure * variance; }
 };
 
-/// A measured line as it is when its channel is not taken late.
-Complex onTime(const Model& model, const Record& record, const Section& section, std::size_t channel, std::size_t line)
+/// A measured line as it is before its sensor.
+Complex unsensed(const Model& model, const Record& record, const Section& section, std::size_t channel,
+                 std::size_t line)
 {
-    const double tau = lagOf(model, record.channels[channel]);
+    const auto sensor = sensorOf(model, record.channels[channel]);
     const auto measured = section.measured[channel][line];
-    return tau == 0.0 ? measured
-                      : measured * std::polar(1.0, 2.0 * std::numbers::pi * record.frequency(section, line) * tau);
+    return sensor.immediate()
+               ? measured
+               : measured / sensor(Complex(0.0, 2.0 * std::numbers::pi * record.frequency(section, line)));
 }
 
 /// The mean of a line of displacement over the channels that tell it.
@@ -51,7 +53,7 @@ Told displacementAt(const Model& model, const Record& record, const Section& sec
     for (std::size_t c = 0; c < record.channels.size(); ++c)
         if (const auto order = integrationsToDisplacement(record.channels[c])) {
             const auto scale = repeated(s, -*order);
-            const Told told {scale * onTime(model, record, section, c, line),
+            const Told told {scale * unsensed(model, record, section, c, line),
                              std::norm(scale) * section.deviation[c][line] * section.deviation[c][line]};
             if (told.isSure()) {
                 sum += told.value / told.variance;
@@ -86,7 +88,7 @@ ShownMotion shownMotion(const Model& model, const Record& record, const Section&
     const auto [first, last] = record.lineRange(section);
     for (std::size_t k = first; k <= last; ++k) {
         if (coil)
-            if (const Told told {onTime(model, record, section, *coil, k), std::pow(section.deviation[*coil][k], 2)};
+            if (const Told told {unsensed(model, record, section, *coil, k), std::pow(section.deviation[*coil][k], 2)};
                 told.isSure())
                 I[k] = told.value;
         if (const auto told = displacementAt(model, record, section, k); told.isSure())

@@ -23,7 +23,7 @@ PeriodicMotion everySample(const ShownMotion&);
 
 /// The motion that a periodic section shows. A line of the current, or of the displacement (from every motion channel,
 /// weighted by its noise), that is three times above its noise is used as measured. Any other line is used as expected.
-/// @param model  tells how late its channels are taken (SensorLag.h), which is undone
+/// @param model  tells the responses of its sensors (SensorResponse.h), which are undone
 /// @param current, displacement  expected spectra of the section's window, A and m
 ShownMotion shownMotion(const Model& model, const Record&, const Section&, const Spectrum& current,
                         const Spectrum& displacement);

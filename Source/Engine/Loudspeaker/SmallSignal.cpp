@@ -4,7 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ArrowResolvent.h"
 #include "Engine/Loudspeaker/Dynamics.h"
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/Parallel.h"
 
@@ -90,18 +90,17 @@ struct Observed {
     double direct = 0.0, gain = 1.0;
     int order = 0, source = -1;  ///< source: the row of C that it is made of, or -1
     bool delayed = false;
-    double lag = 0.0;                ///< s, of its sensor
-    Eigen::Index lagParameter = -1;  ///< among all parameters of the model; -1: none
+    SensorResponse sensor;
+    std::vector<Eigen::Index> sensorParameters;  ///< among all parameters of the model
 };
 
 Observed observe(const Model& model, const SmallSignal& linear, Quantity quantity)
 {
     Observed observed;
     observed.row = Eigen::RowVectorXd::Zero(linear.A.rows());
-    if (const auto place = lagPlace(quantity)) {
-        observed.lag = lagOf(model, quantity);
-        observed.lagParameter = firstParameterOf(model, model.components.size()) + *place;
-    }
+    observed.sensor = sensorOf(model, quantity);
+    for (const auto place : sensorPlaces(quantity))
+        observed.sensorParameters.push_back(firstParameterOf(model, model.components.size()) + place);
     const auto motion = [&](int order) {  // of the spot that the laser sees
         observed.row = linear.C.row(SmallSignal::spot);
         observed.row[1] += 1.0;
@@ -219,8 +218,9 @@ struct DrivenResponse {
         std::complex<double> result = observed[q].gain;
         for (int k = 0; k < observed[q].order; ++k)
             result *= s;
-        const double late = observed[q].delayed ? linear.part.lateness : observed[q].lag;
-        return late != 0.0 ? result * std::exp(-s * late) : result;
+        if (observed[q].delayed)
+            result *= std::exp(-s * linear.part.lateness);
+        return observed[q].sensor.immediate() ? result : result * observed[q].sensor(s);
     }
 
     std::complex<double> value(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z) const
@@ -247,8 +247,9 @@ struct DrivenResponse {
         if (observed[q].delayed)
             for (std::size_t k = 0; k < linear.dLateness.size(); ++k)
                 row[parameters[k]] -= s * linear.dLateness[k] * value;
-        if (observed[q].lagParameter >= 0)
-            row[observed[q].lagParameter] -= s * value;
+        const auto slopes = observed[q].sensor.logSlopes(s);
+        for (std::size_t k = 0; k < observed[q].sensorParameters.size(); ++k)
+            row[observed[q].sensorParameters[k]] += slopes[k] * value;
     }
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converters take channels one after the other, and no parameter of a driver is that.
+// Converters take channels one after the other and lasers have a corner, and no parameter of a driver is that.
 #include "Bench/Bench.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Engine/Loudspeaker/SensorLag.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Signal/Fft.h"
 #include "SmallSetup.h"
 
@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,9 +22,8 @@ using namespace excursion;
 
 namespace {
 
-/// A take of the bench's default driver of which a channel is taken late.
-/// @param samples  may be a part of one
-Measurement taken(Quantity quantity, double samples)
+/// A take of the bench's default driver of which a channel passes a sensor.
+Measurement taken(Quantity quantity, const SensorResponse& sensor)
 {
     auto setup = smallSetup();
     setup.noiseDb = -85.0;
@@ -37,7 +37,7 @@ Measurement taken(Quantity quantity, double samples)
         longer.push_back(channel.samples[length - period + n] * 0.5
                          * (1.0 + std::cos(std::numbers::pi * static_cast<double>(n) / static_cast<double>(period))));
     auto spectrum = fft(longer);
-    lag(spectrum, 2.0 * std::numbers::pi / static_cast<double>(longer.size()), samples);
+    passSensor(spectrum, 2.0 * std::numbers::pi * take.sampleRate / static_cast<double>(longer.size()), sensor);
     spectrum.back() = spectrum.back().real();
     longer = inverseFft(spectrum, longer.size());
     channel.samples.assign(longer.begin(), longer.begin() + static_cast<std::ptrdiff_t>(length));
@@ -56,53 +56,97 @@ Fitted fitted(const Measurement& take, bool held = false)
     Fitted result {startModel(record), {}};
     FitOptions options;
     options.asGiven = held;
-    for (int stage = 0; stage < 2; ++stage)  // the first weighs what is plausible by all that is missing at its start
+    for (int stage = 0; stage < 4; ++stage)  // each weighs what is plausible by all that is missing at its start
         result.summary = fit(result.model, record, estimationSections(record), options);
     return result;
 }
 
-const Parameter& lagParameter(const Model& model, Quantity quantity)
+/// @param which  0: lag, 1: T, 2: q
+const Parameter& sensorParameter(const Model& model, Quantity quantity, std::size_t which = 0)
 {
-    return model.path.parameters[static_cast<std::size_t>(*lagPlace(quantity))];
+    return model.path.parameters[static_cast<std::size_t>(sensorPlaces(quantity)[which])];
+}
+
+void checkDriver(const Model& found, const Model& plain)
+{
+    for (const char* name : {"Re", "Le", "Bl", "m", "Rms", "K"}) {
+        INFO(name);
+        const auto &now = found.baseParameter(name), &before = plain.baseParameter(name);
+        CHECK(std::abs(now.value - before.value) < 3.0 * now.standardError);
+    }
 }
 
 }  // namespace
 
 TEST_CASE("A channel that is taken a part of a sample late is found so, and bends no parameter", "[lag]")
 {
-    const auto plain = fitted(taken(Quantity::current, 0.0));
+    const auto plain = fitted(taken(Quantity::current, {}));
     for (const auto& [quantity, samples] : {std::pair {Quantity::current, 0.03}, {Quantity::displacement, -0.2}}) {
         INFO(name(quantity));
-        const auto take = taken(quantity, samples);
-        const double tau = samples / take.sampleRate;
+        const double tau = samples / smallSetup().sampleRate;
+        const auto take = taken(quantity, {.lag = tau});
         CHECK(fitted(take, true).summary.chiSquaredPerValue > 2.0);
         const auto found = fitted(take);
         CHECK(found.summary.chiSquaredPerValue < 1.1 * plain.summary.chiSquaredPerValue);
-        const auto& p = lagParameter(found.model, quantity);
+        const auto& p = sensorParameter(found.model, quantity);
         CHECK(std::abs(p.value - tau) < 4.0 * p.standardError);
         CHECK(p.standardError < 0.1 * std::abs(tau));
-        for (const char* name : {"Re", "Le", "Bl", "m", "Rms", "K"}) {
-            INFO(name);
-            const auto &now = found.model.baseParameter(name), &before = plain.model.baseParameter(name);
-            CHECK(std::abs(now.value - before.value) < 3.0 * before.standardError);
+        checkDriver(found.model, plain.model);
+    }
+}
+
+TEST_CASE("A laser's corner is found, and bends no parameter", "[lag]")
+{
+    const auto plain = fitted(taken(Quantity::displacement, {}));
+    for (const double Q : {0.55, 0.7, 1.0}) {
+        INFO("Q " << Q);
+        const double time = 1.0 / (2.0 * std::numbers::pi * 1500.0);
+        const SensorResponse sensor {.lag = 20e-6, .T = time, .q = 1.0 / Q};
+        const auto take = taken(Quantity::displacement, sensor);
+        CHECK(fitted(take, true).summary.chiSquaredPerValue > 2.0);
+        const auto found = fitted(take);
+        CHECK(found.summary.chiSquaredPerValue < 1.1 * plain.summary.chiSquaredPerValue);
+        const std::array truth {sensor.lag, sensor.T, sensor.q};
+        for (std::size_t which = 0; which < truth.size(); ++which) {
+            const auto& p = sensorParameter(found.model, Quantity::displacement, which);
+            CHECK(std::abs(p.value - truth[which]) < 4.0 * p.standardError);
         }
+        checkDriver(found.model, plain.model);
+    }
+}
+
+TEST_CASE("A sensor's logarithmic slopes are those of its response", "[lag]")
+{
+    const SensorResponse sensor {.lag = 3e-5, .T = 1e-4, .q = 1.7};
+    const std::complex<double> s(0.0, 5000.0);
+    const auto slopes = sensor.logSlopes(s);
+    for (std::size_t which = 0; which < slopes.size(); ++which) {
+        auto above = sensor, below = sensor;
+        const double step = std::array {1e-9, 1e-8, 1e-5}[which];
+        const auto moved = [&](SensorResponse& of) -> double& {
+            return which == 0 ? of.lag : which == 1 ? of.T : of.q;
+        };
+        moved(above) += step;
+        moved(below) -= step;
+        const auto divided = (std::log(above(s)) - std::log(below(s))) / (2.0 * step);
+        CHECK(std::abs(slopes[which] - divided) < 1e-6 * std::abs(divided));
     }
 }
 
 TEST_CASE("Channels that are taken together are found so", "[lag]")
 {
-    const auto found = fitted(taken(Quantity::current, 0.0));
+    const auto found = fitted(taken(Quantity::current, {}));
     for (const auto quantity : {Quantity::current, Quantity::displacement}) {
-        const auto& p = lagParameter(found.model, quantity);
+        const auto& p = sensorParameter(found.model, quantity);
         CHECK(p.free);
         CHECK(std::abs(p.value) < 4.0 * p.standardError);
     }
     // no channel tells these
-    CHECK(!lagParameter(found.model, Quantity::acceleration).free);
+    CHECK(!sensorParameter(found.model, Quantity::acceleration).free);
     CHECK(toldOfPath(found.model).size() < found.model.path.parameters.size());
 }
 
-TEST_CASE("Laws are fed the motion as it is, however late its channels are taken", "[lag]")
+TEST_CASE("Laws are fed the motion as it is, whatever its sensors are", "[lag]")
 {
     auto setup = smallSetup();
     setup.noiseDb = -90.0;
@@ -111,7 +155,11 @@ TEST_CASE("Laws are fed the motion as it is, however late its channels are taken
     model = withEffect(std::move(model), effectNamed("stiffness"), visitedRange(model, record));
     model.components.back().parameters[1].value = 0.2 * model.baseParameter("K").value;
     for (const auto quantity : {Quantity::current, Quantity::displacement})
-        model.path.parameters[static_cast<std::size_t>(*lagPlace(quantity))].value = 40e-6;  // 0.05 rad at 200 Hz
+        model.path.parameters[static_cast<std::size_t>(sensorPlaces(quantity)[0])].value = 40e-6;  // 0.05 rad at 200 Hz
+    for (const auto& [which, value] : {std::pair {1, 1e-4}, {2, 1.5}})  // a corner of 1.6 kHz
+        model.path
+            .parameters[static_cast<std::size_t>(sensorPlaces(Quantity::displacement)[static_cast<std::size_t>(which)])]
+            .value = value;
     const auto sections = estimationSections(record);
     OutputErrorOptions run;
     run.gradient = false;
@@ -127,7 +175,7 @@ TEST_CASE("Laws are fed the motion as it is, however late its channels are taken
         }
 }
 
-TEST_CASE("A model file from before lags were known is read with none", "[lag]")
+TEST_CASE("A model file from before sensors had responses is read with none", "[lag]")
 {
     const auto now = makeModel("electrodynamic");
     auto document = toJson(now);
@@ -137,6 +185,6 @@ TEST_CASE("A model file from before lags were known is read with none", "[lag]")
     const auto read = modelFromJson(document, "before.json");
     REQUIRE(read.path.parameters.size() == now.path.parameters.size());
     for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration})
-        CHECK(lagOf(read, quantity) == 0.0);
-    CHECK(!lagPlace(Quantity::pressure));
+        CHECK(sensorOf(read, quantity).immediate());
+    CHECK(sensorPlaces(Quantity::pressure).empty());
 }
