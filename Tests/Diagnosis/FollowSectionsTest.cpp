@@ -159,3 +159,46 @@ TEST_CASE("What laws contribute to a record is the same where sections are follo
     CHECK(moved > 0.0);
     CHECK(apart <= 1e-20 * moved);
 }
+
+TEST_CASE("What moves within a section is followed on the lines that were not played, too", "[sections]")
+{
+    auto setup = smallSetup();
+    setup.excitation.levels = {0.5, 1.5, 4.0};
+    setup.excitation.realizations = 3;
+    setup.noiseDb = -80.0;
+    bench::Loudspeaker driver;
+    bench::Oddity worked;
+    worked.kind = bench::Oddity::Kind::wander;
+    worked.stiffness = driver.K;
+    worked.depth = 0.003;
+    driver.oddity = worked;
+    auto record = makeRecord(bench::measure(driver, setup));
+    auto model = startModel(record);
+    adapt(record, model);
+    for (int stage = 0; stage < 3; ++stage)
+        fit(model, record, estimationSections(record));
+    CHECK(compare(model, record).chiSquaredPerValue > 2.0);
+    REQUIRE(sectionsExplain(model, record));
+    record.sectionsDrift = true;
+    for (int stage = 0; stage < 3; ++stage)
+        fit(model, record, estimationSections(record));
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = true;
+    run.substeps = substepsFor(model, record);
+    const auto sections = estimationSections(record);
+    const auto fits = outputError(model, record, sections, {}, run);
+    const auto displacement = *record.channelIndex(Quantity::displacement);
+    double excess = 0.0, count = 0.0;  // of lines that were not played, below a few resonances
+    for (std::size_t n = 0; n < sections.size(); ++n) {
+        const auto& section = record.sections[sections[n]];
+        const auto& played = section.excited;
+        for (std::size_t k = 1; record.frequency(section, k) < 400.0; ++k)
+            if (std::find(played.begin(), played.end(), static_cast<int>(k)) == played.end()) {
+                excess += std::norm(fits[n].predicted[displacement][k] - section.measured[displacement][k])
+                          / std::pow(section.deviation[displacement][k], 2);
+                ++count;
+            }
+    }
+    CHECK(excess / count < 1.3);
+}

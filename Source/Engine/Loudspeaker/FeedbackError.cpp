@@ -52,9 +52,9 @@ public:
                 predicted[c] = played->predicted[c];
             residual.push_back(residual_.of(c, predicted[c]));
         }
-        if ((record_.sectionsDrift || options.sectionsDrift) && SectionDrift::mayDrift(record_, section_)) {
+        if (record_.sectionsDrift || options.sectionsDrift) {
             const auto shown = everySample(motion_);
-            const SectionDrift drift(model_, record_, residual_, paths_, fft(shown.i), fft(shown.x));
+            const SectionDrift drift(model_, record_, section_, residual_, paths_, fft(shown.i), fft(shown.x));
             fit.drift = played ? played->drift : drift.follow(predicted, residual);
             if (!J.empty())
                 drift.takeOut(J);

@@ -78,8 +78,9 @@ public:
             residual.push_back(residual_.of(c, predicted[c]));
         }
         std::optional<SectionDrift> drift;
-        if (paths_ && SectionDrift::mayDrift(record_, section_)) {
-            drift.emplace(model_, record_, residual_, *paths_, fft(trajectory.current), fft(trajectory.displacement));
+        if (paths_) {
+            drift.emplace(model_, record_, section_, residual_, *paths_, fft(trajectory.current),
+                          fft(trajectory.displacement));
             fit.drift = drift->follow(predicted, residual);
         }
         for (std::size_t c = 0; c < channels; ++c) {
