@@ -289,8 +289,10 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
             holdOutWindows(record);
     }
     uncouple(record, take.coupling);
-    if (const auto pressure = record.channelIndex(Quantity::pressure))
+    if (const auto pressure = record.channelIndex(Quantity::pressure)) {
         takeOffHighPass(record, *pressure, options.microphoneCorner);
+        record.microphoneCorner = options.microphoneCorner;
+    }
     record.highFrequency = std::min(trustedBand * std::min(record.sampleRate, take.sampleRate),
                                     distortionBand * record.bandHigh);
     return record;

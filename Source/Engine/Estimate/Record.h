@@ -55,6 +55,7 @@ struct Record {
     bool sectionsDrift = false;
     double lowFrequency = 0.0, highFrequency = 0.0;  ///< Hz: lines outside are not compared
     double bandLow = 0.0, bandHigh = 0.0;            ///< Hz: the excited band
+    double microphoneCorner = 0.0;                   ///< Hz, of the high-pass that was taken off the pressure
     std::size_t leadIn = 0;                          ///< samples that a periodic section is run before its window
     DriverInfo driver;
 

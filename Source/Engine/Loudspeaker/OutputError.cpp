@@ -121,14 +121,13 @@ private:
         const auto path = firstParameterOf(model_, model_.components.size());
         for (std::size_t c = 0; c < J.size(); ++c) {
             const auto sensor = sensorOf(model_, record_.channels[c]);
-            const auto places = sensorPlaces(record_.channels[c]);
-            for (std::size_t p = 0; p < places.size(); ++p) {
-                const auto at = std::find(active_.begin(), active_.end(), path + places[p]);
+            for (const auto& p : sensorParameters(record_.channels[c])) {
+                const auto at = std::find(active_.begin(), active_.end(), path + p.place);
                 if (at == active_.end())
                     continue;
                 auto slope = predicted[c];
-                for (std::size_t k = 0; k < slope.size(); ++k)
-                    slope[k] *= sensor.logSlopes({0.0, step * static_cast<double>(k)})[p];
+                for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
+                    slope[k] *= sensor.logSlope(p.value, {0.0, step * static_cast<double>(k)});
                 residual_.fill(c, slope, J[c].col(at - active_.begin()));
             }
         }

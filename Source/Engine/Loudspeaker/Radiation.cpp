@@ -39,6 +39,9 @@ public:
             own.push_back({.name = "T" + of, .unit = "s", .free = false, .prior = 1.0 / end});
             own.push_back({.name = "q" + of, .unit = "", .free = false, .prior = 2.0});
         }
+        const double begin = 2.0 * std::numbers::pi * e.lowFrequency;
+        own.push_back({.name = "w_p", .unit = "rad/s", .free = false, .prior = begin});
+        own.push_back({.name = "dw_p", .unit = "rad/s", .free = false, .prior = begin});
         return own;
     }
     int coefficientCount(const OperatingRange&) const override { return 2; }

@@ -8,53 +8,63 @@
 namespace excursion {
 namespace {
 
-/// In the order of the path's parameters (Radiation.cpp): a lag of each, then T and q of each motion.
-constexpr std::array sensed {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration};
-constexpr Eigen::Index firstLag = 2, firstCorner = firstLag + static_cast<Eigen::Index>(sensed.size());
-
-Parameter& placed(Model& model, Eigen::Index place) { return model.path.parameters[static_cast<std::size_t>(place)]; }
+constexpr std::array sensed {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration,
+                             Quantity::pressure};
 
 }  // namespace
 
 std::complex<double> SensorResponse::operator()(std::complex<double> s) const
 {
-    const auto late = std::exp(-s * (lag - q * T));
-    return T == 0.0 ? late : late / (1.0 + s * T * (q + s * T));
+    auto result = std::exp(-s * (lag - q * T));
+    if (T != 0.0)
+        result /= 1.0 + s * T * (q + s * T);
+    if (further != 0.0)
+        result *= (s + rolledOff) / (s + rolledOff + further);
+    return result;
 }
 
-std::array<std::complex<double>, 3> SensorResponse::logSlopes(std::complex<double> s) const
+std::complex<double> SensorResponse::logSlope(double SensorResponse::*by, std::complex<double> s) const
 {
     const auto corner = 1.0 + s * T * (q + s * T);
     const auto byDamping = s - s / corner;  // by q T
-    return {-s, q * byDamping - 2.0 * s * s * T / corner, T * byDamping};
+    if (by == &SensorResponse::lag)
+        return -s;
+    if (by == &SensorResponse::T)
+        return q * byDamping - 2.0 * s * s * T / corner;
+    if (by == &SensorResponse::q)
+        return T * byDamping;
+    const auto rolled = -1.0 / (s + rolledOff + further);
+    return by == &SensorResponse::further ? rolled : rolled + 1.0 / (s + rolledOff);
 }
 
-std::vector<Eigen::Index> sensorPlaces(Quantity quantity)
+std::vector<SensorParameter> sensorParameters(Quantity quantity)
 {
-    const auto found = std::find(sensed.begin(), sensed.end(), quantity);
-    if (found == sensed.end())
-        return {};
-    const auto k = static_cast<Eigen::Index>(found - sensed.begin());
-    if (quantity == Quantity::current)
-        return {firstLag + k};
-    return {firstLag + k, firstCorner + 2 * (k - 1), firstCorner + 2 * (k - 1) + 1};
+    using S = SensorResponse;
+    switch (quantity) {  // in the order of the path's parameters (Radiation.cpp)
+    case Quantity::current: return {{2, &S::lag}};
+    case Quantity::displacement: return {{3, &S::lag}, {6, &S::T}, {7, &S::q}};
+    case Quantity::velocity: return {{4, &S::lag}, {8, &S::T}, {9, &S::q}};
+    case Quantity::acceleration: return {{5, &S::lag}, {10, &S::T}, {11, &S::q}};
+    case Quantity::pressure: return {{12, &S::rolledOff}, {13, &S::further}};
+    case Quantity::voltage:
+    case Quantity::force: break;
+    }
+    return {};
 }
 
 SensorResponse sensorOf(const Model& model, Quantity quantity)
 {
     SensorResponse sensor;
-    const std::array values {&sensor.lag, &sensor.T, &sensor.q};
-    const auto places = sensorPlaces(quantity);
-    for (std::size_t k = 0; k < places.size(); ++k)
-        *values[k] = model.path.parameters[static_cast<std::size_t>(places[k])].value;
+    for (const auto& p : sensorParameters(quantity))
+        sensor.*p.value = model.path.parameters[static_cast<std::size_t>(p.place)].value;
     return sensor;
 }
 
 Model withoutSensors(Model model)
 {
     for (const auto quantity : sensed)
-        for (const auto place : sensorPlaces(quantity))
-            placed(model, place).value = 0.0;
+        for (const auto& p : sensorParameters(quantity))
+            model.path.parameters[static_cast<std::size_t>(p.place)].value = 0.0;
     return model;
 }
 

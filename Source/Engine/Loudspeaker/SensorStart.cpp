@@ -2,9 +2,9 @@
 #include "Engine/Loudspeaker/SensorStart.h"
 
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Take/Motion.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -75,13 +75,63 @@ Left leftBy(const SensorResponse& corner, const std::vector<Ratio>& ratios)
 
 SensorResponse withCorner(double omega, double q) { return {.T = 1.0 / omega, .q = q}; }
 
-void expect(Parameter& p, double prior, bool isSigned)
+Parameter& parameterOf(Model& model, const SensorParameter& p)
 {
-    constexpr double most = 10.0;  // times the prior
+    return model.path.parameters[static_cast<std::size_t>(p.place)];
+}
+
+constexpr double most = 10.0;  // times the prior
+
+void expect(Parameter& p, double prior, double lower)
+{
     p.free = true;
     p.prior = prior;
+    p.lower = lower;
     p.upper = most * prior;
-    p.lower = isSigned ? -p.upper : 0.0;
+}
+
+/// Displacement and velocity fall off with frequency.
+bool falls(Quantity quantity) { return quantity == Quantity::displacement || quantity == Quantity::velocity; }
+
+void freeLag(Parameter& lag, const Record& record, Quantity quantity)
+{
+    constexpr double turn = 0.05;  // rad; of the prior
+    const double highest = falls(quantity) ? std::sqrt(record.bandLow * record.bandHigh) : record.bandHigh;
+    const double prior = turn / (2.0 * std::numbers::pi * highest);
+    expect(lag, prior, -most * prior);
+}
+
+void freeCorner(Model& model, const Record& record, Quantity motion)
+{
+    constexpr double farAbove = 4.0;  // times the end of the band
+    // Beyond two equal poles a corner becomes a lag of first order and no place of T.
+    constexpr double lowestDamping = 0.1, highestDamping = 2.0;
+    const auto own = sensorParameters(motion);
+    auto &lag = parameterOf(model, own[0]), &T = parameterOf(model, own[1]), &q = parameterOf(model, own[2]);
+    const double end = 2.0 * std::numbers::pi * record.bandHigh;
+    expect(T, 1.0 / end, 0.0);
+    q.free = true;
+    q.lower = lowestDamping;
+    q.upper = highestDamping;
+    if (T.value != 0.0)
+        return;
+    // There nothing changes with either.
+    const auto begin =
+        cornerOf(model, linearResponsesOf(record), motion).value_or(withCorner(farAbove * end, std::numbers::sqrt2));
+    if (lag.value == 0.0)
+        lag.value = std::clamp(begin.lag, lag.lower, lag.upper);
+    T.value = std::min(begin.T, T.upper);
+    q.value = begin.q;
+}
+
+void freeRollOff(Model& model, const Record& record)
+{
+    constexpr double error = 0.1, unseen = 0.02;  // of the corner; of the begin of the band
+    const auto own = sensorParameters(Quantity::pressure);
+    const double corner = 2.0 * std::numbers::pi * record.microphoneCorner;
+    parameterOf(model, own[0]).value = corner;
+    const double prior = corner > 0.0 ? error * corner : unseen * 2.0 * std::numbers::pi * record.bandLow;
+    expect(parameterOf(model, own[1]), prior, corner > 0.0 ? -0.5 * corner : 0.0);
 }
 
 }  // namespace
@@ -114,38 +164,20 @@ std::optional<SensorResponse> cornerOf(const Model& model, const std::vector<Res
 
 void freeSensors(Model& model, const Record& record)
 {
-    constexpr double turn = 0.05;     // rad; of the prior
-    constexpr double farAbove = 4.0;  // times the end of the band
-    // Beyond two equal poles a corner becomes a lag of first order and no place of T.
-    constexpr double lowestDamping = 0.1, highestDamping = 2.0;
     const bool told = hasPeriods(record) && record.noiseKnown && record.bandLow > 0.0;
+    const bool besideCurrent = record.channelIndex(Quantity::current).has_value();
     for (const auto quantity :
-         {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration}) {
-        std::vector<Parameter*> own;
-        for (const auto place : sensorPlaces(quantity))
-            own.push_back(&model.path.parameters[static_cast<std::size_t>(place)]);
-        for (auto* p : own)
-            p->free = false;
+         {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::pressure}) {
+        for (const auto& p : sensorParameters(quantity))
+            parameterOf(model, p).free = false;
         if (!told || !record.channelIndex(quantity))
             continue;
-        const double end = 2.0 * std::numbers::pi * record.bandHigh;
-        // Displacement and velocity fall off with frequency.
-        const bool falls = quantity == Quantity::displacement || quantity == Quantity::velocity;
-        expect(*own[0], turn / (falls ? end * std::sqrt(record.bandLow / record.bandHigh) : end), true);
-        if (own.size() == 1 || !record.channelIndex(Quantity::current))
-            continue;
-        expect(*own[1], 1.0 / end, false);
-        own[2]->free = true;
-        own[2]->lower = lowestDamping;
-        own[2]->upper = highestDamping;
-        if (own[1]->value != 0.0)
-            continue;
-        // There nothing changes with either.
-        const auto begin = cornerOf(model, linearResponsesOf(record), quantity)
-                               .value_or(withCorner(farAbove * end, std::numbers::sqrt2));
-        const std::array values {own[0]->value == 0.0 ? begin.lag : own[0]->value, begin.T, begin.q};
-        for (std::size_t k = 0; k < own.size(); ++k)
-            own[k]->value = std::clamp(values[k], own[k]->lower, own[k]->upper);
+        if (quantity != Quantity::pressure)
+            freeLag(parameterOf(model, sensorParameters(quantity).front()), record, quantity);
+        if (isMotion(quantity) && besideCurrent)
+            freeCorner(model, record, quantity);
+        if (quantity == Quantity::pressure && besideCurrent)
+            freeRollOff(model, record);
     }
 }
 

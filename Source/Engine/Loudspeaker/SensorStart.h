@@ -17,7 +17,8 @@ std::optional<SensorResponse> cornerOf(const Model&, const std::vector<ResponseT
 /// Lets the responses of those sensors be fitted that a record can tell: in periods with a known noise. A lag is
 /// expected to turn the phase by no more than 0.05 rad: of a current at the end of the band, of a motion in its middle.
 /// A corner is free beside a current only: without one it is hard to tell from an inductance. Where there is none yet
-/// the search begins with that of cornerOf(), or with one far above the band.
+/// the search begins with that of cornerOf(), or with one far above the band. Beside a current a microphone's corner
+/// may be another than that by which the record was corrected, too.
 void freeSensors(Model&, const Record&);
 
 }  // namespace excursion

@@ -68,7 +68,9 @@ void Sensors::delay(Spectrum& spectrum) const
 {
     for (auto& line : spectrum)
         line *= gain_;
-    passSensor(spectrum, step(), {.lag = later_});
+    auto sensor = sensorOf(model_, Quantity::pressure);
+    sensor.lag = later_;
+    passSensor(spectrum, step(), sensor);
 }
 
 void Sensors::addSpot(Spectrum& spectrum, std::span<const double> spot, int order) const
@@ -129,7 +131,7 @@ std::vector<double> Sensors::record(Quantity quantity) const
         return inverseFft(spectrum, length);
     };
     if (quantity == Quantity::pressure) {
-        if (later_ == 0.0) {
+        if (later_ == 0.0 && sensorOf(model_, quantity).immediate()) {
             auto samples = arrival_.heard(run_[Trace::flow]);
             std::transform(samples.begin(), samples.end(), samples.begin(),
                            [this](double flow) { return gain_ * flow; });

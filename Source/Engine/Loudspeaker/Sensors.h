@@ -17,7 +17,7 @@ namespace excursion {
 ///     displacement  X = DFT{x + spot},   velocity, acceleration: of its derivatives,
 ///     pressure      P = rho/(2 pi d) exp(-j w tau_0) DFT{area acceleration, heard later by lateness - tau_0},
 /// tau_0 the lateness at rest (Emission, Arrival). What drifts repeats in no period: it is heard as it was before the
-/// window if the trajectory's sound begins as much ahead (aheadOf()). All but the pressure pass a sensor
+/// window if the trajectory's sound begins as much ahead (aheadOf()). Each passes its sensor
 /// (SensorResponse.h). Model and trajectory must outlive this.
 class Sensors {
 public:

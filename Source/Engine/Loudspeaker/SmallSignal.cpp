@@ -91,7 +91,7 @@ struct Observed {
     int order = 0, source = -1;  ///< source: the row of C that it is made of, or -1
     bool delayed = false;
     SensorResponse sensor;
-    std::vector<Eigen::Index> sensorParameters;  ///< among all parameters of the model
+    std::vector<SensorParameter> ofSensor;  ///< placed among all parameters of the model
 };
 
 Observed observe(const Model& model, const SmallSignal& linear, Quantity quantity)
@@ -99,8 +99,8 @@ Observed observe(const Model& model, const SmallSignal& linear, Quantity quantit
     Observed observed;
     observed.row = Eigen::RowVectorXd::Zero(linear.A.rows());
     observed.sensor = sensorOf(model, quantity);
-    for (const auto place : sensorPlaces(quantity))
-        observed.sensorParameters.push_back(firstParameterOf(model, model.components.size()) + place);
+    for (const auto& p : sensorParameters(quantity))
+        observed.ofSensor.push_back({firstParameterOf(model, model.components.size()) + p.place, p.value});
     const auto motion = [&](int order) {  // of the spot that the laser sees
         observed.row = linear.C.row(SmallSignal::spot);
         observed.row[1] += 1.0;
@@ -247,9 +247,8 @@ struct DrivenResponse {
         if (observed[q].delayed)
             for (std::size_t k = 0; k < linear.dLateness.size(); ++k)
                 row[parameters[k]] -= s * linear.dLateness[k] * value;
-        const auto slopes = observed[q].sensor.logSlopes(s);
-        for (std::size_t k = 0; k < observed[q].sensorParameters.size(); ++k)
-            row[observed[q].sensorParameters[k]] += slopes[k] * value;
+        for (const auto& p : observed[q].ofSensor)
+            row[p.place] += observed[q].sensor.logSlope(p.value, s) * value;
     }
 };
 
