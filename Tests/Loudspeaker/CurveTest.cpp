@@ -4,6 +4,7 @@
 #include "Engine/Loudspeaker/Model.h"
 #include "Loudspeaker/EffectBench.h"
 
+#include <Eigen/QR>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -161,5 +162,36 @@ TEST_CASE("Rms(v) is the cosine form of the Chebyshev polynomials over the round
         }
         INFO("degree " << n << ": " << worst);
         CHECK(worst < rounding(n));
+    }
+}
+
+TEST_CASE("Rms(v) follows a vent that resists otherwise from its other side", "[curve]")
+{
+    const auto& effect = effectNamed("damping-velocity");
+    OperatingRange visited;
+    visited.velocity = 0.7;
+    visited.degree = 8;
+    const auto count = effect.parameters(visited).size();
+    constexpr int points = 400;
+    for (const double side : {0.2, 0.35, 0.5}) {
+        // What of a force (1 + 1.5 (sqrt(w^2 + d^2) - d) + 0.3 w/sqrt(w^2 + side^2)) w no coefficients give: those of
+        // the law and of a constant.
+        Eigen::MatrixXd A(points, static_cast<Eigen::Index>(count) + 1);
+        Eigen::VectorXd force(points);
+        constexpr double d = 0.13;
+        for (int n = 0; n < points; ++n) {
+            const double w = -1.0 + (2.0 * n + 1.0) / points;
+            force[n] = w * (1.0 + 1.5 * (std::hypot(w, d) - d) + 0.3 * w / std::hypot(w, side));
+            A(n, 0) = w;
+            for (std::size_t k = 0; k < count; ++k) {
+                std::vector<double> values(count, 0.0);
+                if (effect.parameters(visited)[k].name != "centre")
+                    values[k] = 1.0;
+                A(n, static_cast<Eigen::Index>(k) + 1) = w * effect.lawAt(visited, values.data(), w * visited.velocity);
+            }
+        }
+        const Eigen::VectorXd left = force - A * A.completeOrthogonalDecomposition().solve(force);
+        INFO("sides part within " << side);
+        CHECK(20.0 * std::log10(left.norm() / force.norm()) < -60.0);
     }
 }

@@ -36,7 +36,8 @@ struct ChannelComparison {
     Quantity quantity = Quantity::current;
     std::string unit;
     ErrorLevel total;  ///< all validation sections
-    /// wander of the take (Wander.h); none if the model has an effect that drifts, or if it is not known
+    /// wander of the take (Wander.h); none if it is not known, if the model has an effect that drifts, or if moves that
+    /// are followed within the sections (SectionDrift.h) are a good part of it
     std::optional<double> wanderDb;
     std::vector<ErrorLevel> byLevel;  ///< one per level of the excitation
     std::vector<ErrorKinds> kindsByLevel;

@@ -16,7 +16,8 @@ bool tellsMoves(const Record& record)
 
 bool sectionsExplain(Model model, const Record& record, int substeps, const Progress& progress)
 {
-    constexpr double most = 0.75, clearly = 1.3;  // of what is left over the noise without a fit; times less after it
+    constexpr double most = 0.75;                        // of what is left over the noise without a fit
+    constexpr double clearly = 1.3, farFromNoise = 2.0;  // times less after it
     if (!tellsMoves(record))
         return false;
     const auto plain = tryCompare(model, record, {substeps, false}, progress.silent());
@@ -35,7 +36,9 @@ bool sectionsExplain(Model model, const Record& record, int substeps, const Prog
         return false;
     const auto rest = tryCompare(model, followed, {substeps, false}, progress.silent());
     return rest && rest->sectionMoves && rest->sectionMoves->areSmall()
-           && (isNoise(*rest) || rest->chiSquaredPerValue < std::min(atNoise, plain->chiSquaredPerValue / clearly));
+           && (isNoise(*rest)
+               || rest->chiSquaredPerValue * (rest->chiSquaredPerValue < atNoise ? clearly : farFromNoise)
+                      < plain->chiSquaredPerValue);
 }
 
 }  // namespace excursion

@@ -19,6 +19,10 @@ struct SectionMoves {
 
 SectionMoves movesOf(const std::vector<SectionFit>&);
 
+/// [channel], the share of the power of the played lines at the loudest level by which the mean of the periods is not
+/// sure, as Wander.h counts it, for moves that are followed go on from period to period.
+std::vector<double> wanderByMoves(const Model&, const Record&, const OutputErrorOptions&);
+
 /// "Between the sections of the take the stiffness moves by 0.4 % and the resistance by 0.1 %, ...": a sentence.
 std::string told(const SectionMoves&);
 

@@ -37,35 +37,34 @@ Spectrum ramped(const Spectrum& spectrum, std::size_t window)
 
 SectionDrift::SectionDrift(const Model& model, const Record& record, const Section& section, const Residual& residual,
                            const Paths& paths, const Spectrum& i, const Spectrum& x)
-    : residual_(residual)
+    : section_(section), residual_(residual)
 {
     const bool moves = &section != &referenceOf(record);
-    const auto add = [&](const std::vector<Path>& through, double gain, const Spectrum& drive, const Motion& motion) {
-        std::vector<Spectrum> act, onTheWay;
+    const auto add = [&](const std::vector<Path>& through, double gain, const Spectrum& drive, Motion motion) {
         for (const auto& path : through) {
-            act.emplace_back(drive.size(), 0.0);
+            auto& act = motion.act.emplace_back(drive.size(), 0.0);
             for (std::size_t k = residual.firstLine(); k <= residual.lastLine(); ++k)
-                act.back()[k] = gain * path.value[k - paths.first] * drive[k];
-            onTheWay.push_back(ramped(act.back(), section.window));
+                act[k] = gain * path.value[k - paths.first] * drive[k];
         }
-        if (moves) {
-            acts_.push_back(std::move(act));
+        if (moves)
             motions_.push_back(motion);
-        }
-        acts_.push_back(std::move(onTheWay));
-        motions_.push_back({nullptr, perWindow * motion.sigma});
+        motion.sigma *= perWindow;
+        motion.onTheWay = true;
+        motions_.push_back(std::move(motion));
     };
-    add(paths.fromForce, -model.baseParameter("K").value, x, {&Amount::stiffness, stiffnessMoves});
+    add(paths.fromForce, -model.baseParameter("K").value, x, {&Amount::stiffness, stiffnessMoves, {}, false});
     if (model.electrical())
-        add(paths.fromVoltage, -model.baseParameter("Re").value, i, {&Amount::resistance, resistanceMoves});
+        add(paths.fromVoltage, -model.baseParameter("Re").value, i, {&Amount::resistance, resistanceMoves, {}, false});
     const auto count = static_cast<Eigen::Index>(motions_.size());
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index p = 0; p < count; ++p)
         M(p, p) = std::pow(motions_[static_cast<std::size_t>(p)].sigma, -2);
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         Eigen::MatrixXd a(residual.rows(), count);
-        for (Eigen::Index p = 0; p < count; ++p)
-            residual.fill(c, acts_[static_cast<std::size_t>(p)][c], a.col(p));
+        for (Eigen::Index p = 0; p < count; ++p) {
+            const auto& motion = motions_[static_cast<std::size_t>(p)];
+            residual.fill(c, motion.onTheWay ? ramped(motion.act[c], section.window) : motion.act[c], a.col(p));
+        }
         M.noalias() += a.transpose() * a;
         a_.push_back(std::move(a));
     }
@@ -79,16 +78,24 @@ SectionDrift::Amount SectionDrift::follow(std::vector<Spectrum>& predicted, std:
         pull.noalias() += a_[c].transpose() * r[c];
     const Eigen::VectorXd drift = -inverse_ * pull;
     Amount amount;
-    for (std::size_t p = 0; p < motions_.size(); ++p) {
-        const double by = drift[static_cast<Eigen::Index>(p)];
-        if (motions_[p].amount)
-            amount.*motions_[p].amount = by;
-        for (std::size_t c = 0; c < r.size(); ++c)
-            for (std::size_t k = 0; k < predicted[c].size(); ++k)
-                predicted[c][k] += by * acts_[p][c][k];
-    }
-    for (std::size_t c = 0; c < r.size(); ++c)
+    for (std::size_t p = 0; p < motions_.size(); ++p)
+        if (!motions_[p].onTheWay)
+            amount.*motions_[p].amount = drift[static_cast<Eigen::Index>(p)];
+    for (std::size_t c = 0; c < r.size(); ++c) {
+        Spectrum step(predicted[c].size(), 0.0), moved(predicted[c].size(), 0.0);
+        for (std::size_t p = 0; p < motions_.size(); ++p) {
+            auto& sum = motions_[p].onTheWay ? step : moved;
+            for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
+                sum[k] += drift[static_cast<Eigen::Index>(p)] * motions_[p].act[c][k];
+        }
+        double& power = amount.onTheWay.emplace_back(0.0);
+        for (const int k : section_.excited)
+            power += std::norm(step[static_cast<std::size_t>(k)]);
+        const auto ramp = ramped(step, section_.window);
+        for (std::size_t k = 0; k < predicted[c].size(); ++k)
+            predicted[c][k] += moved[k] + ramp[k];
         r[c].noalias() += a_[c] * drift;
+    }
     return amount;
 }
 

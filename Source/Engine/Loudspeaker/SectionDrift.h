@@ -30,9 +30,10 @@ class SectionDrift {
 public:
     using Spectrum = std::vector<std::complex<double>>;
 
-    /// Shares of K and Re.
     struct Amount {
-        double stiffness = 0.0, resistance = 0.0;
+        double stiffness = 0.0, resistance = 0.0;  ///< shares of K and Re
+        /// [channel], sum |d Y|^2 over the played lines of what a window differs by from the next one
+        std::vector<double> onTheWay {};
     };
 
     /// @param paths  of the record's channels
@@ -48,17 +49,19 @@ public:
     void takeOut(std::vector<Eigen::MatrixXd>& J) const;
 
 private:
-    /// What moves, and by how much it is expected to.
+    /// What moves, and what it does.
     struct Motion {
-        double Amount::*amount;  ///< none of what moves on the way
-        double sigma;
+        double Amount::*amount;
+        double sigma;               ///< expected
+        std::vector<Spectrum> act;  ///< [channel]
+        bool onTheWay;              ///< within the window
     };
 
+    const Section& section_;
     const Residual& residual_;
     std::vector<Motion> motions_;
-    std::vector<std::vector<Spectrum>> acts_;  ///< [motion][channel]
-    std::vector<Eigen::MatrixXd> a_;           ///< [channel]
-    Eigen::MatrixXd inverse_;                  ///< M^-1
+    std::vector<Eigen::MatrixXd> a_;  ///< [channel]
+    Eigen::MatrixXd inverse_;         ///< M^-1
 };
 
 }  // namespace excursion

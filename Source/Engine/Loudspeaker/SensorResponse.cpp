@@ -79,7 +79,7 @@ void passSensor(std::vector<std::complex<double>>& spectrum, double step, const 
 std::vector<Parameter> toldOfPath(const Model& model)
 {
     auto told = model.path.parameters;
-    std::erase_if(told, [&](const Parameter& p) { return !p.free && p.value == 0.0 && std::isfinite(p.prior); });
+    std::erase_if(told, [](const Parameter& p) { return std::isfinite(p.prior) && !std::isfinite(p.standardError); });
     return told;
 }
 

@@ -51,7 +51,7 @@ Model withoutSensors(Model);
 /// @param step  rad/s
 void passSensor(std::vector<std::complex<double>>& spectrum, double step, const SensorResponse&);
 
-/// The parameters of the path that say something: without those of sensors that are zero, as nothing tells them.
+/// The parameters of the path that say something: without those of sensors that no fit could tell.
 std::vector<Parameter> toldOfPath(const Model&);
 
 }  // namespace excursion
