@@ -48,14 +48,13 @@ void run(const FitArguments& options, Terminal& terminal)
         auto record = open.take.record();
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.9));
-        if (sectionsExplain(model, record, summary.substeps)) {
-            auto followed = record;
-            followed.sectionsDrift = true;
+        if (auto following = followingSections(model, record, summary.substeps)) {
+            model = std::move(*following);
+            record.sectionsDrift = true;
             auto again = model;
-            if (const auto run = refine(again, followed, {}, progress.part(0.9, 0.95)); run.usable()) {
+            if (const auto run = refine(again, record, {}, progress.part(0.9, 0.95)); run.usable()) {
                 model = std::move(again);
                 summary = run;
-                record = std::move(followed);
             }
         }
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));

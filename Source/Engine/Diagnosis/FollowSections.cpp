@@ -14,31 +14,33 @@ bool tellsMoves(const Record& record)
     return !record.sectionsDrift && record.noiseKnown && hasPeriods(record) && record.levels.size() > 1;
 }
 
-bool sectionsExplain(Model model, const Record& record, int substeps, const Progress& progress)
+std::optional<Model> followingSections(Model model, const Record& record, int substeps, const Progress& progress)
 {
     constexpr double most = 0.75;                        // of what is left over the noise without a fit
     constexpr double clearly = 1.3, farFromNoise = 2.0;  // times less after it
     if (!tellsMoves(record))
-        return false;
+        return std::nullopt;
     const auto plain = tryCompare(model, record, {substeps, false}, progress.silent());
     if (!plain || isNoise(*plain))
-        return false;
+        return std::nullopt;
     auto followed = record;
     followed.sectionsDrift = true;
     const auto glimpse = tryCompare(model, followed, {substeps, false}, progress.silent());
     if (!glimpse || glimpse->chiSquaredPerValue - sureNoise > most * (plain->chiSquaredPerValue - sureNoise))
-        return false;
+        return std::nullopt;
     FitOptions options;
     options.substeps = substeps;
     options.fedGradient = true;
     options.search = {10, 1e-3};
     if (!fitFed(model, followed, estimationSections(followed), options, progress.silent()).usable())
-        return false;
+        return std::nullopt;
     const auto rest = tryCompare(model, followed, {substeps, false}, progress.silent());
-    return rest && rest->sectionMoves && rest->sectionMoves->areSmall()
-           && (isNoise(*rest)
-               || rest->chiSquaredPerValue * (rest->chiSquaredPerValue < atNoise ? clearly : farFromNoise)
-                      < plain->chiSquaredPerValue);
+    if (!rest || !rest->sectionMoves || !rest->sectionMoves->areSmall())
+        return std::nullopt;
+    const double times = rest->chiSquaredPerValue < atNoise ? clearly : farFromNoise;
+    if (!isNoise(*rest) && rest->chiSquaredPerValue * times > plain->chiSquaredPerValue)
+        return std::nullopt;
+    return model;
 }
 
 }  // namespace excursion

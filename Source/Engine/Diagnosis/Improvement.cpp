@@ -319,18 +319,21 @@ Rung Improvement::judged(Rung rung, Data& data, const Progress& progress) const
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     auto* record = std::get_if<Record>(&data);
     const bool isUnknown = record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable();
-    const bool moves = isUnknown && sectionsExplain(rung.model, *record, rung.fit.substeps, progress);
-    if (moves)
+    if (!isUnknown)
+        return rung;
+    auto following = followingSections(rung.model, *record, rung.fit.substeps, progress);
+    if (following) {
         record->sectionsDrift = true;
-    if (isUnknown
-        && (moves || rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise))) {
+        rung.model = std::move(*following);
+    }
+    if (following || rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise)) {
         auto better = rung.model;
         if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7));
             run.usable()) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));
-        } else if (moves) {
+        } else if (following) {
             judge(progress.part(0.7, 1.0));
         }
     }
