@@ -170,6 +170,7 @@ public:
             s.deviationWithoutDrift.clear();
             s.inputVariance.clear();
             s.inputNoise.clear();
+            s.departure.spectrum.clear();
         }
     }
 

@@ -102,6 +102,9 @@ std::vector<double> powerByPeriod(const Measurement& take, int section)
     return power;
 }
 
+/// How far above the band's begin a driver still rings long enough to carry something from one period into the next.
+constexpr double ringing = 40.0;
+
 void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t simulated,
                          Record& record)
 {
@@ -149,6 +152,8 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
                     section.deviationWithoutDrift.push_back(
                         deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
+            section.departure = inputDeparture(averages, level, realization, section.input, inputVariance,
+                                               std::min(record.bandHigh, ringing * record.bandLow), simulated);
             if (simulated != section.window)
                 sampleAnew(section, simulated);
             record.sections.push_back(std::move(section));

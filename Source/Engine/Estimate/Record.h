@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Estimate/InputDeparture.h"
 #include "Engine/Take/Measurement.h"
 
 #include <complex>
@@ -37,6 +38,7 @@ struct Section {
     /// all of them, and a part of their deviations; empty until a model tells it (adapt())
     std::vector<std::vector<std::complex<double>>> inputNoise;
     std::vector<int> excited;  ///< excited lines, if known
+    InputDeparture departure;  ///< of a periodic section's input from `input`
 };
 
 /// A take prepared for fit and comparison. Periods are averaged, and their scatter is the noise. Lines above the

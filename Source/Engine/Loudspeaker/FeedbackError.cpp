@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/FeedbackError.h"
 
 #include "Engine/Loudspeaker/Arrival.h"
+#include "Engine/Loudspeaker/DepartureResponse.h"
 #include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
@@ -23,14 +24,15 @@ using Complex = std::complex<double>;
 class FedSection {
 public:
     FedSection(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
-               const Fed& fed, const Paths& paths)
+               const Fed& fed, const Paths& paths, const DepartureResponse* departures)
         : model_(model),
           record_(record),
           section_(section),
           motion_(motion),
           residual_(record, section),
           fed_(fed),
-          paths_(paths)
+          paths_(paths),
+          departures_(departures)
     {
     }
 
@@ -48,10 +50,13 @@ public:
             const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted[c]);
             if (options.gradient && !active.empty())
                 J.push_back(columns(c, active, heard));
-            if (played)
-                predicted[c] = played->predicted[c];
-            residual.push_back(residual_.of(c, predicted[c]));
         }
+        if (played)
+            predicted = played->predicted;
+        else if (departures_)
+            departures_->addTo(predicted, section_);
+        for (std::size_t c = 0; c < channels; ++c)
+            residual.push_back(residual_.of(c, predicted[c]));
         if (record_.sectionsDrift || options.sectionsDrift) {
             const auto shown = everySample(motion_);
             const SectionDrift drift(model_, record_, section_, residual_, paths_, fft(shown.i), fft(shown.x));
@@ -197,6 +202,7 @@ private:
     Residual residual_;
     const Fed& fed_;
     const Paths& paths_;
+    const DepartureResponse* departures_;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
     Spectrum onTheWay_;  ///< what the way to the microphone makes of a line, once it is asked for
@@ -222,12 +228,14 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
     const auto paths = pathsToChannels(model, record, sections, gradient, options.threads);
+    const auto departures = departureResponses(model, record, sections);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
         const auto fed = feed(model, record, section, motions[s], histories, s, wanted,
                               known && gradient ? &(*known)[s] : nullptr);
-        fits[s] = FedSection(model, record, section, motions[s], fed, paths.at(section.window))
+        fits[s] = FedSection(model, record, section, motions[s], fed, paths.at(section.window),
+                             ofWindow(departures, section))
                       .run(active, options, played ? &(*played)[s] : nullptr);
         return fits[s].finite;
     });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/OutputError.h"
 
+#include "Engine/Loudspeaker/DepartureResponse.h"
 #include "Engine/Loudspeaker/LawPace.h"
 #include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/Sensors.h"
@@ -42,7 +43,8 @@ class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
                const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const StepDivision& division,
-               std::size_t leadIn, std::size_t ahead, const StartState& from, const Paths* paths)
+               std::size_t leadIn, std::size_t ahead, const StartState& from, const Paths* paths,
+               const DepartureResponse* departures)
         : model_(model),
           record_(record),
           section_(section),
@@ -51,7 +53,8 @@ public:
           options_(options),
           division_(division),
           from_(from),
-          paths_(paths)
+          paths_(paths),
+          departures_(departures)
     {
         input_ = record.drive(section, leadIn);
         drive_.emplace(input_, record.sampleRate, options.substeps);
@@ -73,10 +76,12 @@ public:
         std::vector<Eigen::VectorXd> residual;
         std::vector<Spectrum> predicted;
         Sensors sensors(model_, trajectory, record_.sampleRate);
-        for (std::size_t c = 0; c < channels; ++c) {
-            predicted.push_back(sensors.seen(record_.channels[c]));
+        for (const auto quantity : record_.channels)
+            predicted.push_back(sensors.seen(quantity));
+        if (departures_)
+            departures_->addTo(predicted, section_);
+        for (std::size_t c = 0; c < channels; ++c)
             residual.push_back(residual_.of(c, predicted[c]));
-        }
         std::optional<SectionDrift> drift;
         if (paths_) {
             drift.emplace(model_, record_, section_, residual_, *paths_, fft(trajectory.current),
@@ -178,6 +183,7 @@ private:
     const StepDivision& division_;
     const StartState& from_;
     const Paths* paths_;
+    const DepartureResponse* departures_;
     std::vector<double> input_;
     std::optional<Drive> drive_;
     Window window_;
@@ -230,11 +236,12 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     const auto paths = record.sectionsDrift || wanted.sectionsDrift
                            ? pathsToChannels(model, record, sections, false, options.threads)
                            : PathsByWindow {};
+    const auto departures = departureResponses(model, record, sections);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
-        const auto path = paths.find(record.sections[sections[n]].window);
-        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, division, leadIn, ahead,
-                             from[n], path == paths.end() ? nullptr : &path->second)
+        const auto& section = record.sections[sections[n]];
+        fits[n] = SectionRun(model, record, section, active, options, division, leadIn, ahead, from[n],
+                             ofWindow(paths, section), ofWindow(departures, section))
                       .run();
         return fits[n].finite;
     });
