@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Estimate/MainsHum.h"
 #include "Engine/Estimate/SectionEnds.h"
 #include "Engine/Take/FindExcitation.h"
 
@@ -62,7 +63,8 @@ const Measurement& PreparedTake::settled() const
     const auto& raw = measurement();
     std::call_once(state_->settledOnce, [&] {
         auto settled = raw;
-        if (settleEnds(settled) > 0)
+        const int ends = settleEnds(settled), sinusoids = takeOffHum(settled);
+        if (ends + sinusoids > 0)
             state_->settled = std::move(settled);
     });
     return state_->settled ? *state_->settled : raw;

@@ -27,8 +27,9 @@ public:
     /// The take in time. Throws Error (data) when it is a frequency response.
     const Measurement& measurement() const;
 
-    /// The take in time with the ends of its sections settled (settleEnds()): what models are fitted to. Made when it
-    /// is first asked for; the take itself where nothing rings.
+    /// The take in time with the ends of its sections settled (settleEnds()) and without the hum of the mains
+    /// (takeOffHum()): what models are fitted to. Made when it is first asked for; the take itself where nothing rings
+    /// or hums.
     const Measurement& settled() const;
 
     /// Of what was measured. Made when it is first asked for.
