@@ -49,7 +49,8 @@ void run(const FitArguments& options, Terminal& terminal)
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.9));
         if (auto following = followingSections(model, record, summary.substeps)) {
-            model = std::move(*following);
+            model = std::move(following->model);
+            summary = following->fit;
             record.sectionsDrift = true;
             auto again = model;
             if (const auto run = refine(again, record, {}, progress.part(0.9, 0.95)); run.usable()) {

@@ -29,7 +29,7 @@ Record recordFor(const Model& model, const OpenTake& open)
     adapt(record, model);
     if (followsDrift(model, record))
         takeDriftOutOfNoise(record);
-    record.sectionsDrift = followingSections(model, record).has_value();
+    record.sectionsDrift = movesExplain(model, record);
     return record;
 }
 

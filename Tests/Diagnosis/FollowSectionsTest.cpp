@@ -118,6 +118,7 @@ TEST_CASE("Sections explain what small moves leave, and neither large ones nor a
     {
         const auto [model, record] = drifted(little);
         CHECK(followingSections(model, record).has_value());
+        CHECK(movesExplain(model, record));
         auto followed = record;
         followed.sectionsDrift = true;
         CHECK(!followingSections(model, followed));  // they are followed already
@@ -128,6 +129,7 @@ TEST_CASE("Sections explain what small moves leave, and neither large ones nor a
     {
         const auto [model, record] = drifted({});
         CHECK(!followingSections(model, record));  // only noise is left
+        CHECK(!movesExplain(model, record));
         CHECK(!compare(model, record).sectionMoves);
     }
     {
@@ -180,7 +182,7 @@ TEST_CASE("What moves within a section is followed on the lines that were not pl
     CHECK(compare(model, record).chiSquaredPerValue > 2.0);
     auto following = followingSections(model, record);
     REQUIRE(following.has_value());
-    model = std::move(*following);
+    model = std::move(following->model);
     record.sectionsDrift = true;
     for (int stage = 0; stage < 2; ++stage)
         fit(model, record, estimationSections(record));

@@ -72,7 +72,8 @@ TEST_CASE("The driver's parameters come back within their errors from a noisy ta
     const auto all = parametersOf(model);
     REQUIRE(model.covariance.rows() == static_cast<Eigen::Index>(all.size()));
     for (std::size_t k = 0; k < all.size(); ++k)
-        if (all[k]->free && std::isfinite(all[k]->standardError))  // no sensor has a corner here that could be told
+        // no sensor has a corner here that could be told
+        if (all[k]->free && (std::isfinite(all[k]->standardError) || k < all.size() - model.path.parameters.size()))
             CHECK(std::sqrt(model.covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)))
                   == Approx(all[k]->standardError));
 }

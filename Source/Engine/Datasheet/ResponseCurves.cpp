@@ -5,6 +5,7 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Estimate/Bla.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Take/Air.h"
@@ -75,7 +76,7 @@ std::vector<double> curveFrequencies(double low, double high, double pointsPerOc
 Frf impedanceCurve(const Model& model, const std::vector<double>& frequency)
 {
     requireCoil(model.electrical());
-    Frf frf {frequency, respond(model, {Quantity::current}, frequency).front().value, {}, {}};
+    Frf frf {frequency, respond(withoutSensors(model), {Quantity::current}, frequency).front().value, {}, {}};
     for (auto& value : frf.value)
         value = 1.0 / value;
     return frf;
@@ -93,7 +94,7 @@ Frf soundCurve(const ScaledModel& given, const std::vector<double>& frequency)
     if (given.areaIsGuessed)
         throw Error(Error::Kind::data,
                     "The take does not tell the area of the cone, so the sound cannot be told; give it.");
-    Frf frf {frequency, respond(model, {Quantity::pressure}, frequency).front().value, {}, {}};
+    Frf frf {frequency, respond(withoutSensors(model), {Quantity::pressure}, frequency).front().value, {}, {}};
     const double flight = model.path.parameters[1].value;
     for (std::size_t k = 0; k < frequency.size(); ++k)
         frf.value[k] *= std::polar(1.0, 2.0 * std::numbers::pi * frequency[k] * flight);

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -224,7 +225,7 @@ private:
         options.spectra = true;
         options.substeps = substepsFor(model, record, tolerance);
         Simulated result;
-        for (auto& fit : outputError(model, record, sections_, {}, options)) {
+        for (auto& fit : outputError(withoutSensors(model), record, sections_, {}, options)) {
             if (!fit.finite)
                 return {};
             result.push_back(std::move(fit.predicted));

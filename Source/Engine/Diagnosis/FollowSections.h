@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Estimate/Record.h"
-#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Progress.h"
 
 #include <optional>
@@ -13,8 +13,17 @@ namespace excursion {
 /// it has periods, several levels and a known noise.
 bool tellsMoves(const Record&);
 
-/// The model fitted again with small moves between the sections of a take followed (Record::sectionsDrift). None where
-/// tellsMoves() denies them, where only noise is left without them, or where they explain neither all of it nor half.
-std::optional<Model> followingSections(Model, const Record&, int substeps = 0, const Progress& = {});
+/// Whether a model that leaves more than noise leaves noise, or much less, where small moves between the sections of a
+/// take are followed. Not where tellsMoves() denies them.
+bool movesExplain(const Model&, const Record&, int substeps = 0, const Progress& = {});
+
+struct Following {
+    Model model;
+    FitSummary fit;
+};
+
+/// A model that was fitted without small moves between the sections of a take, fitted again with these followed
+/// (Record::sectionsDrift). None where they do not explain what it leaves, as in movesExplain(), then.
+std::optional<Following> followingSections(Model, const Record&, int substeps = 0, const Progress& = {});
 
 }  // namespace excursion

@@ -324,7 +324,8 @@ Rung Improvement::judged(Rung rung, Data& data, const Progress& progress) const
     auto following = followingSections(rung.model, *record, rung.fit.substeps, progress);
     if (following) {
         record->sectionsDrift = true;
-        rung.model = std::move(*following);
+        rung.model = std::move(following->model);
+        rung.fit = following->fit;
     }
     if (following || rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise)) {
         auto better = rung.model;

@@ -27,10 +27,12 @@ std::vector<double> wanderByMoves(const Model& model, const Record& record, cons
         if (record.sections[s].level == loudest)
             sections.push_back(s);
     const auto fits = outputError(model, record, sections, {}, options);
-    std::vector<double> shares;
+    std::vector<double> shares(record.channels.size(), 0.0);
+    if (std::any_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return !fit.finite; }))
+        return shares;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         double scatter = 0.0, power = 0.0;
-        for (std::size_t n = 0; n < fits.size() && fits[n].finite; ++n) {
+        for (std::size_t n = 0; n < fits.size(); ++n) {
             const auto& section = record.sections[sections[n]];
             const double periods = std::round(2.0 * (section.end - section.middle) * record.sampleRate
                                               / static_cast<double>(section.window));
@@ -39,7 +41,7 @@ std::vector<double> wanderByMoves(const Model& model, const Record& record, cons
             for (const int k : section.excited)
                 power += std::norm(section.measured[c][static_cast<std::size_t>(k)]);
         }
-        shares.push_back(power > 0.0 ? scatter / power : 0.0);
+        shares[c] = power > 0.0 ? scatter / power : 0.0;
     }
     return shares;
 }

@@ -5,45 +5,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace excursion {
+
+namespace {
+
+/// Rises from 0 to 1 as `at` goes from 0 to 1.
+double rise(double at)
+{
+    const double within = std::clamp(at, 0.0, 1.0);
+    return 0.5 - 0.5 * std::cos(std::numbers::pi * within);
+}
+
+/// Takes out what is no more than noise: Wiener's filter on means over neighbouring lines.
+/// @param noise  E|.|^2 of a line
+void silence(std::vector<std::complex<double>>& spectrum, const std::vector<double>& noise)
+{
+    constexpr std::size_t around = 8;
+    std::vector<double> power(spectrum.size() + 1, 0.0);
+    for (std::size_t l = 0; l < spectrum.size(); ++l)
+        power[l + 1] = power[l] + std::norm(spectrum[l]);
+    for (std::size_t l = 0; l < spectrum.size(); ++l) {
+        const std::size_t first = l - std::min(l, around), end = std::min(spectrum.size(), l + around + 1);
+        const double mean = (power[end] - power[first]) / static_cast<double>(end - first);
+        spectrum[l] *= mean > 0.0 ? std::max(0.0, 1.0 - noise[l] / mean) : 0.0;
+    }
+}
+
+}  // namespace
 
 InputDeparture inputDeparture(const AveragedPeriods& averages, int level, int realization,
                               const std::vector<double>& driven, const std::vector<double>& variance, double highest,
                               std::size_t samples)
 {
     constexpr double worthIt = 4.0, least = 1e-10;  // times the noise; of the input's power
+    constexpr std::size_t mostLines = 2048;
     const auto& take = averages.take();
     const auto& e = averages.excitation();
     InputDeparture departure {e.settlePeriods, e.periods, {}};
     const auto period = static_cast<std::size_t>(e.period),
-               played = static_cast<std::size_t>(e.settlePeriods + e.periods),
-               begin = static_cast<std::size_t>(level * e.realizations + realization) * played * period;
+               settled = static_cast<std::size_t>(e.settlePeriods) * period,
+               played = settled + static_cast<std::size_t>(e.periods) * period,
+               begin = static_cast<std::size_t>(level * e.realizations + realization) * played;
     std::vector<double> d(static_cast<std::size_t>(departure.windows()) * period, 0.0);
-    for (std::size_t n = 0; n < played * period; ++n)
-        d[n] = take.input().samples[begin + n] - driven[n % period];
+    // What a driver has forgotten by then does not count: a crossfade in the first half of the last settling period.
+    const double half = 0.5 * static_cast<double>(period), forgotten = static_cast<double>(settled) - 2.0 * half;
+    for (std::size_t n = 0; n < played; ++n)
+        d[n] = (settled > 0 ? rise((static_cast<double>(n) - forgotten) / half - 0.5) : 1.0)
+               * (take.input().samples[begin + n] - driven[n % period]);
     auto spectrum = fft(d);
-    const auto lines = static_cast<std::size_t>(highest / take.sampleRate * static_cast<double>(d.size()));
-    spectrum.resize(std::min(spectrum.size(), lines + 1));
+    const double resolution = take.sampleRate / static_cast<double>(d.size());
+    spectrum.resize(std::min({spectrum.size(), mostLines, static_cast<std::size_t>(highest / resolution) + 1}));
 
-    // What a driver has forgotten by then does not count: a crossfade in the first half of the settling.
-    const auto from = static_cast<std::size_t>(e.settlePeriods) * period - (e.settlePeriods > 0 ? period / 2 : 0);
-    std::fill(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(from), 0.0);
-    const auto heard = fft(d);
-    double power = 0.0, noise = 0.0, input = 0.0;
-    for (std::size_t l = 0; l < spectrum.size(); ++l)
-        power += std::norm(heard[l]);
+    const double N = static_cast<double>(period),
+                 heard = static_cast<double>(played) - (settled > 0 ? forgotten + half : 0.0);
+    std::vector<double> noise(spectrum.size(), 0.0);
+    double power = 0.0, sum = 0.0, input = 0.0;
     const auto once = fft(driven);
-    for (std::size_t k = 1; k < once.size() && k * static_cast<std::size_t>(departure.windows()) <= lines; ++k) {
-        input += std::norm(once[k]);
-        noise += variance.empty() ? 0.0 : e.periods * variance[k];  // of one period; that of the mean is less
+    for (std::size_t l = 0; l < spectrum.size(); ++l) {
+        const std::size_t k = std::min(l / static_cast<std::size_t>(departure.windows()), once.size() - 1);
+        power += std::norm(spectrum[l]);
+        input += std::norm(once[k]) * heard / N;
+        if (!variance.empty())  // of the mean; one period has that many times as much
+            sum += noise[l] = e.periods * variance[k] * heard / N;
     }
-    const double periodsHeard = static_cast<double>(played * period - from) / static_cast<double>(period);
-    if (power < departure.windows() * periodsHeard * std::max(worthIt * noise, least * input))
+    if (power < std::max(worthIt * sum, least * input))
         return departure;
-    const double scale = static_cast<double>(samples) / static_cast<double>(period);
-    for (auto& line : spectrum)
-        line *= scale;
+    silence(spectrum, noise);
+    const double scale = static_cast<double>(samples) / N, lines = static_cast<double>(spectrum.size());
+    for (std::size_t l = 0; l < spectrum.size(); ++l)  // a sharp end would ring through all periods
+        spectrum[l] *= scale * rise(2.0 * (1.0 - static_cast<double>(l) / lines));
     departure.spectrum = std::move(spectrum);
     return departure;
 }

@@ -21,7 +21,9 @@ struct InputDeparture {
     int windows() const { return settling + averaged + 1; }
 };
 
-/// Up to `highest` Hz. None where that is hardly more than noise of the input, or -100 dB of it.
+/// Up to `highest` Hz, fading over the octave below, without what is no more than noise of the input, and without what
+/// was played before the middle of the last settling period. None where little more than that noise is left, or less
+/// than -100 dB of the input.
 /// @param driven    ubar, at the rate of the take
 /// @param variance  of the averaged input, unnormalized DFT of a period; may be empty
 /// @param samples   N, of the window; the take's period may have more or fewer

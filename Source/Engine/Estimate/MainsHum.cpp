@@ -20,6 +20,18 @@ constexpr double reach = 0.25;  // Hz
 
 double turnOf(double hertz, double sampleRate) { return 2.0 * std::numbers::pi * hertz / sampleRate; }
 
+/// Whether the periods of all channels can be compared. Where nothing settled the first one is another.
+bool repeats(const Measurement& take)
+{
+    if (!take.excitation)
+        return false;
+    const auto& e = *take.excitation;
+    return e.period > 0 && e.periods > 1 && e.settlePeriods > 0 && e.realizations > 0 && !e.levels.empty()
+           && std::all_of(take.channels.begin(), take.channels.end(), [&e](const Channel& channel) {
+                  return static_cast<long>(channel.samples.size()) >= e.totalSamples();
+              });
+}
+
 /// A part of a used period, too short for the phase of what is looked for to get away.
 struct Piece {
     double middle, length;  ///< samples, of the take
@@ -48,7 +60,7 @@ struct Differences {
 
 Differences differencesOf(const Measurement& take, const Channel& channel)
 {
-    const auto& e = periodicExcitation(take);
+    const auto& e = *take.excitation;
     Differences result;
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level)
         for (int m = 0; m < e.realizations; ++m) {
@@ -146,9 +158,9 @@ double explainedBy(const std::vector<Trial>& trials, const Excitation& e, double
 
 int takeOffHum(Measurement& take)
 {
-    if (!take.excitation || take.excitation->periods < 2)
+    if (!repeats(take))
         return 0;
-    const auto& e = periodicExcitation(take);
+    const auto& e = *take.excitation;
     std::vector<Differences> differences;
     for (const auto& channel : take.channels)
         differences.push_back(differencesOf(take, channel));

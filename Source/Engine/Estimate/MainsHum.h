@@ -11,7 +11,8 @@ namespace excursion {
 ///     A a_p exp(j w t),   a_p = 1 - 1/P sum_p' exp(j w (p' - p) N),
 /// so A is found over all sections together, by least squares weighted with their scatter. All channels and harmonics
 /// share the frequency at which those that explain 8 times what is usual (the median beside it) explain
-/// most together. They are taken off if that is 35 times what is usual. A take without two used periods stays as it is.
+/// most together. They are taken off if that is 35 times what is usual. A take without two used periods, or with none
+/// that settles, stays as it is.
 /// @return the number of sinusoids that were taken off, over all channels
 int takeOffHum(Measurement&);
 

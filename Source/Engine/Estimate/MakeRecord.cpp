@@ -152,8 +152,9 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
                     section.deviationWithoutDrift.push_back(
                         deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
-            section.departure = inputDeparture(averages, level, realization, section.input, inputVariance,
-                                               std::min(record.bandHigh, ringing * record.bandLow), simulated);
+            if (!(take.coupling > 0.0))  // a recorder's own forgets as slowly, and is taken off line by line
+                section.departure = inputDeparture(averages, level, realization, section.input, inputVariance,
+                                                   std::min(record.bandHigh, ringing * record.bandLow), simulated);
             if (simulated != section.window)
                 sampleAnew(section, simulated);
             record.sections.push_back(std::move(section));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/DepartureResponse.h"
 
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Complex kernelAt(std::ptrdiff_t q, const InputDeparture& of, std::size_t N)
 
 }  // namespace
 
-DepartureResponse::DepartureResponse(const Model& model, const Record& record, const Section& section)
+DepartureResponse::DepartureResponse(const Model& model, const Record& record, const Section& section, unsigned threads)
 {
     const auto& departure = section.departure;
     const auto lines = departure.spectrum.size();
@@ -35,8 +36,21 @@ DepartureResponse::DepartureResponse(const Model& model, const Record& record, c
     std::vector<double> frequency(lines);
     for (std::size_t l = 0; l < lines; ++l)
         frequency[l] = step * std::max(static_cast<double>(l), 1e-3);
-    for (auto& response : respond(model, record.channels, frequency, false))
-        path_.push_back(std::move(response.value));
+    const auto s = [step](std::size_t l) {
+        return Complex(0.0, 2.0 * std::numbers::pi * step * std::max(static_cast<double>(l), 1e-3));
+    };
+    const auto responses = respondToEach(model, record.channels, frequency, {Drives::terminals}, false, threads);
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+        path_.push_back(responses.front()[c].value);
+        takenOff_.emplace_back();
+        const double w = sensorOf(model, record.channels[c]).rolledOff;
+        if (w == 0.0)
+            continue;
+        for (std::size_t l = 0; l < lines; ++l)
+            path_[c][l] *= s(l) / (s(l) + w);
+        for (std::size_t l = 0; l < lines; l += static_cast<std::size_t>(departure.windows()))
+            takenOff_[c].push_back((s(l) + w) / s(l));
+    }
     const auto reach = static_cast<std::ptrdiff_t>(2 * lines);
     for (std::ptrdiff_t q = -reach; q <= reach; ++q)
         kernel_.push_back(kernelAt(q, departure, section.window));
@@ -59,18 +73,18 @@ void DepartureResponse::addTo(std::vector<std::vector<Complex>>& predicted, cons
             for (std::size_t l = 1; l < lines; ++l)
                 sum += Y[l] * at[static_cast<std::ptrdiff_t>(l)]
                        + std::conj(Y[l]) * at[-static_cast<std::ptrdiff_t>(l)];
-            predicted[c][k] += sum;
+            predicted[c][k] += takenOff_[c].empty() ? sum : sum * takenOff_[c][k];
         }
     }
 }
 
 DepartureResponses departureResponses(const Model& model, const Record& record,
-                                      const std::vector<std::size_t>& sections)
+                                      const std::vector<std::size_t>& sections, unsigned threads)
 {
     DepartureResponses responses;
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !section.departure.spectrum.empty())
-            responses.try_emplace(section.window, model, record, section);
+            responses.try_emplace(section.window, model, record, section, threads);
     return responses;
 }
 

@@ -236,7 +236,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     const auto paths = record.sectionsDrift || wanted.sectionsDrift
                            ? pathsToChannels(model, record, sections, false, options.threads)
                            : PathsByWindow {};
-    const auto departures = departureResponses(model, record, sections);
+    const auto departures = departureResponses(model, record, sections, options.threads);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
         const auto& section = record.sections[sections[n]];

@@ -79,7 +79,9 @@ void passSensor(std::vector<std::complex<double>>& spectrum, double step, const 
 std::vector<Parameter> toldOfPath(const Model& model)
 {
     auto told = model.path.parameters;
-    std::erase_if(told, [](const Parameter& p) { return std::isfinite(p.prior) && !std::isfinite(p.standardError); });
+    std::erase_if(told, [](const Parameter& p) {
+        return std::isfinite(p.prior) && !std::isfinite(p.standardError) && (p.free || p.value == 0.0);
+    });
     return told;
 }
 

@@ -128,10 +128,13 @@ void freeRollOff(Model& model, const Record& record)
 {
     constexpr double error = 0.1, unseen = 0.02;  // of the corner; of the begin of the band
     const auto own = sensorParameters(Quantity::pressure);
-    const double corner = 2.0 * std::numbers::pi * record.microphoneCorner;
-    parameterOf(model, own[0]).value = corner;
+    auto &rolledOff = parameterOf(model, own[0]), &further = parameterOf(model, own[1]);
+    const double corner = 2.0 * std::numbers::pi * record.microphoneCorner, before = rolledOff.value;
     const double prior = corner > 0.0 ? error * corner : unseen * 2.0 * std::numbers::pi * record.bandLow;
-    expect(parameterOf(model, own[1]), prior, corner > 0.0 ? -0.5 * corner : 0.0);
+    rolledOff.value = corner;
+    expect(further, prior, corner > 0.0 ? -0.5 * corner : 0.0);
+    if (before != corner)  // of another take of the same microphone, or not known yet
+        further.value = std::clamp(before > 0.0 ? further.value + before - corner : 0.0, further.lower, further.upper);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/Simulate.h"
 
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/Sensors.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
@@ -104,7 +105,8 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
                     "The simulated driver ran away: at this level the model is driven far beyond the "
                     "range in which it was measured; lower --full-scale.");
     progress.at(0.95, "radiating");
-    const Sensors sensors(model, run, sampleRate);
+    const auto perfect = withoutSensors(model);
+    const Sensors sensors(perfect, run, sampleRate);
 
     Measurement result;
     result.sampleRate = sampleRate;

@@ -31,8 +31,9 @@ struct SimulationSummary {
 SimulationSummary chooseSubsteps(const Model&, std::span<const double> input, double sampleRate,
                                  const SimulationOptions&);
 
-/// Simulates all channels (the input, current, displacement, velocity, acceleration and pressure) from an input record,
-/// with the step halved until the tolerance is reached. Throws Error (numerical) if the model runs away.
+/// Simulates all channels (the input, current, displacement, velocity, acceleration and pressure), as perfect sensors
+/// tell them (withoutSensors()), from an input record, with the step halved until the tolerance is reached. Throws
+/// Error (numerical) if the model runs away.
 Measurement simulate(const Model&, std::span<const double> input, double sampleRate, const SimulationOptions&,
                      SimulationSummary* = nullptr, const Progress& = {});
 

@@ -2,6 +2,7 @@
 #include "Engine/Predistortion/DriverMotion.h"
 
 #include "Engine/Loudspeaker/Resonance.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/Inverse.h"
 #include "Engine/Predistortion/RealTime.h"
@@ -55,7 +56,8 @@ void addMeanCorrection(LinearMotion& motion, const Model& model)
     motion.mostCorrection.resize(points, 0.0);
     for (const double octaves : {-1.0, 0.0, 1.0}) {
         const double frequency = motion.resonance * std::exp2(octaves),
-                     perVolt = std::abs(respond(model, {Quantity::displacement}, {frequency}).front().value.front());
+                     perVolt = std::abs(
+                         respond(withoutSensors(model), {Quantity::displacement}, {frequency}).front().value.front());
         Reference reference(model, perPeriod * frequency);
         Inverse inverse(model, perPeriod * frequency);
         for (std::size_t k = 1; k < points; ++k) {
@@ -75,8 +77,9 @@ void addMeanCorrection(LinearMotion& motion, const Model& model)
     }
 }
 
-double worstSensitivity(const Model& model, double f0)
+double worstSensitivity(const Model& given, double f0)
 {
+    const auto model = withoutSensors(given);
     std::vector<double> frequency;
     for (int k = 0; k < 24; ++k)
         frequency.push_back(f0 * 0.1 * std::pow(30.0, k / 23.0));

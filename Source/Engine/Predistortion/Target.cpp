@@ -3,6 +3,7 @@
 
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/ThirdOctaves.h"
 #include "Engine/Take/Air.h"
@@ -113,7 +114,7 @@ void OwnLinearPart::takeResonance(const std::function<std::complex<double>(doubl
 
 OwnLinearPart::OwnLinearPart(const Model& model)
 {
-    const auto straight = linearPart(model);
+    const auto straight = withoutSensors(linearPart(model));
     const auto own = coneResonance(model);
     const auto there = baseAt(model, own.frequency);
     const auto base = [&there](const char* name) { return parameterNamed(there, name).value; };

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Resonance.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/Linearizer.h"
 #include "Engine/Predistortion/Predistorter.h"
@@ -230,7 +231,7 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
     subject.own = OwnLinearPart(model);
     subject.resonance = resonanceOf(model);
     subject.sampleRate = rate;
-    const auto straight = linearPart(model);
+    const auto straight = withoutSensors(linearPart(model));
     subject.motion = [straight](double f) {
         return respond(straight, {Quantity::displacement}, {f}).front().value.front();
     };
