@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/InputDeparture.h"
 
+#include "Engine/Numerics/Median.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -62,13 +63,15 @@ InputDeparture inputDeparture(const AveragedPeriods& averages, int level, int re
                  heard = static_cast<double>(played) - (settled > 0 ? forgotten + half : 0.0);
     std::vector<double> noise(spectrum.size(), 0.0);
     double power = 0.0, sum = 0.0, input = 0.0;
+    // At low lines the scatter of the periods is what departs.
+    const double usual = variance.empty() ? 0.0 : medianOf(variance);
     const auto once = fft(driven);
     for (std::size_t l = 0; l < spectrum.size(); ++l) {
         const std::size_t k = std::min(l / static_cast<std::size_t>(departure.windows()), once.size() - 1);
         power += std::norm(spectrum[l]);
         input += std::norm(once[k]) * heard / N;
         if (!variance.empty())  // of the mean; one period has that many times as much
-            sum += noise[l] = e.periods * variance[k] * heard / N;
+            sum += noise[l] = e.periods * std::min(variance[k], usual) * heard / N;
     }
     if (power < std::max(worthIt * sum, least * input))
         return departure;
