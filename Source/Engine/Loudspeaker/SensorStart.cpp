@@ -126,13 +126,16 @@ void freeCorner(Model& model, const Record& record, Quantity motion)
 
 void freeRollOff(Model& model, const Record& record)
 {
-    constexpr double error = 0.1, unseen = 0.02;  // of the corner; of the begin of the band
+    constexpr double error = 0.1;  // of the corner
     const auto own = sensorParameters(Quantity::pressure);
     auto &rolledOff = parameterOf(model, own[0]), &further = parameterOf(model, own[1]);
     const double corner = 2.0 * std::numbers::pi * record.microphoneCorner, before = rolledOff.value;
-    const double prior = corner > 0.0 ? error * corner : unseen * 2.0 * std::numbers::pi * record.bandLow;
     rolledOff.value = corner;
-    expect(further, prior, corner > 0.0 ? -0.5 * corner : 0.0);
+    if (corner == 0.0) {
+        further.value = 0.0;
+        return;
+    }
+    expect(further, error * corner, -0.5 * corner);
     if (before != corner)  // of another take of the same microphone, or not known yet
         further.value = std::clamp(before > 0.0 ? further.value + before - corner : 0.0, further.lower, further.upper);
 }
