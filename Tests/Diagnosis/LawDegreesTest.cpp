@@ -71,7 +71,7 @@ TEST_CASE("A law that gives coefficients back needs no other fit", "[diagnosis]"
         CHECK(std::abs(one[k]->value - other[k]->value) < 0.1 * other[k]->standardError);
         CHECK(one[k]->standardError == Approx(other[k]->standardError).epsilon(0.02));
     }
-    CHECK(compared == 14);  // six of the base, six of the law and two lags
+    CHECK(compared == 16);  // six of the base, six of the law, two lags and the displacement's corner
 
     lowerAsItPays(high.model, high.summary, high.record, estimationSections(high.record), high.options);
     CHECK(high.model.components[1].operatingRange.degree == 6);

@@ -14,13 +14,14 @@ struct SectionMoves {
     double stiffness = 0.0, resistance = 0.0;  ///< the latter zero without a coil
 
     /// At most 3 % and 0.5 %: what a worked suspension and a warm coil do unnoticed. A larger move is an effect.
-    bool areSmall() const { return stiffness < 0.03 && resistance < 0.005; }
+    bool areSmall() const;
 };
 
 SectionMoves movesOf(const std::vector<SectionFit>&);
 
 /// [channel], the share of the power of the played lines at the loudest level by which the mean of the periods is not
-/// sure, as Wander.h counts it, for moves that are followed go on from period to period.
+/// sure, as Wander.h counts it, for moves that are followed go on from period to period. Zero where they go to and fro
+/// over the take: that is a parameter that wanders.
 std::vector<double> wanderByMoves(const Model&, const Record&, const OutputErrorOptions&);
 
 /// "Between the sections of the take the stiffness moves by 0.4 % and the resistance by 0.1 %, ...": a sentence.

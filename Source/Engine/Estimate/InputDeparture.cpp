@@ -9,7 +9,6 @@
 #include <numbers>
 
 namespace excursion {
-
 namespace {
 
 /// Rises from 0 to 1 as `at` goes from 0 to 1.
@@ -51,16 +50,15 @@ InputDeparture inputDeparture(const AveragedPeriods& averages, int level, int re
                begin = static_cast<std::size_t>(level * e.realizations + realization) * played;
     std::vector<double> d(static_cast<std::size_t>(departure.windows()) * period, 0.0);
     // What a driver has forgotten by then does not count: a crossfade in the first half of the last settling period.
-    const double half = 0.5 * static_cast<double>(period), forgotten = static_cast<double>(settled) - 2.0 * half;
+    const double N = static_cast<double>(period), middle = static_cast<double>(settled) - 0.5 * N;
     for (std::size_t n = 0; n < played; ++n)
-        d[n] = (settled > 0 ? rise((static_cast<double>(n) - forgotten) / half - 0.5) : 1.0)
+        d[n] = (settled > 0 ? rise(0.5 + (static_cast<double>(n) - middle) / (0.5 * N)) : 1.0)
                * (take.input().samples[begin + n] - driven[n % period]);
     auto spectrum = fft(d);
     const double resolution = take.sampleRate / static_cast<double>(d.size());
     spectrum.resize(std::min({spectrum.size(), mostLines, static_cast<std::size_t>(highest / resolution) + 1}));
 
-    const double N = static_cast<double>(period),
-                 heard = static_cast<double>(played) - (settled > 0 ? forgotten + half : 0.0);
+    const double heard = static_cast<double>(played) - std::max(0.0, middle);
     std::vector<double> noise(spectrum.size(), 0.0);
     double power = 0.0, sum = 0.0, input = 0.0;
     // At low lines the scatter of the periods is what departs.

@@ -39,6 +39,7 @@ struct Searched {
     std::vector<SectionFit> fits;      // of the model by these, when they had to be known
     std::vector<Eigen::Index> shapes;  // that are left alone
     Eigen::MatrixXd beside;            // J_active^T J_shapes
+    Eigen::VectorXd own;               // of each shape, J_shape^T J_shape
 };
 
 Searched telling(const Model& model, const ErrorOf& errorOf)
@@ -83,6 +84,7 @@ Searched telling(const Model& model, const ErrorOf& errorOf)
         return parameters;
     };
     result.beside = sum->N(kept, left);
+    result.own = sum->N.diagonal()(left);
     result.shapes = at(left);
     active = at(kept);
     return result;
@@ -227,7 +229,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.sum.rows - static_cast<double>(P));
     const double scatter = std::max(1.0, summary.chiSquaredPerValue);
     const FitCurvature curvature {active, last.sum.N, last.ofData, last.shared, last.pulls, scatter};
-    keepCovariance(model, curvature, {searched.shapes, searched.beside});
+    keepCovariance(model, curvature, {searched.shapes, searched.beside, searched.own});
     for (auto* p : all)
         if (p->free)
             p->standardError = std::numeric_limits<double>::quiet_NaN();

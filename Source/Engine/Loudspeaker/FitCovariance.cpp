@@ -10,13 +10,15 @@
 namespace excursion {
 namespace {
 
-/// The squares of their priors.
-Eigen::VectorXd priorVariances(const Model& model, const std::vector<Eigen::Index>& parameters)
+/// P of ShapesLeft.
+Eigen::VectorXd variancesOf(const Model& model, const ShapesLeft& left, double scatter)
 {
     const auto all = parametersOf(model);
-    Eigen::VectorXd P(static_cast<Eigen::Index>(parameters.size()));
-    for (Eigen::Index k = 0; k < P.size(); ++k)
-        P[k] = std::pow(all[static_cast<std::size_t>(parameters[static_cast<std::size_t>(k)])]->prior, 2);
+    Eigen::VectorXd P(static_cast<Eigen::Index>(left.parameters.size()));
+    for (Eigen::Index k = 0; k < P.size(); ++k) {
+        const auto* p = all[static_cast<std::size_t>(left.parameters[static_cast<std::size_t>(k)])];
+        P[k] = 1.0 / (std::pow(p->prior, -2) + left.own[k] / scatter);
+    }
     return P;
 }
 
@@ -35,7 +37,7 @@ void keepCovariance(Model& model, const FitCurvature& fit, const ShapesLeft& lef
     model.inverseCurvature = model.covariance = Eigen::MatrixXd::Zero(size, size);
     model.inverseCurvature(active, active) = fit.scatter * inverse;
     if (!left.parameters.empty()) {
-        const auto P = priorVariances(model, left.parameters);
+        const auto P = variancesOf(model, left, fit.scatter);
         const Eigen::MatrixXd T = known * left.beside, TP = T * P.asDiagonal();
         own += TP * T.transpose();
         model.covariance(active, left.parameters) = -TP;

@@ -23,12 +23,14 @@ struct FitCurvature {
 struct ShapesLeft {
     const std::vector<Eigen::Index>& parameters;
     const Eigen::MatrixXd& beside;  ///< J^T J_shapes, searched parameters x shapes
+    const Eigen::VectorXd& own;     ///< of each, J_shape^T J_shape
 };
 
 /// Leaves in a model s N^-1 as Model::inverseCurvature, and as covariance
 ///     N^-1 (max(phi, s) M + s W) N^-1,   M = J^T J + shared,
 /// phi by overdispersionOf(), which is s N^-1 only where every residual scatters by itself. Shapes that were left alone
-/// are known by their priors, the squares P, and the others would have followed them:
+/// are known by their priors and by what the data says of each alone, P = 1/(1/prior^2 + own/s): where a search began
+/// far off, that may be more than the prior. The others would have followed them:
 ///     + T P T^T,   and -T P and P beside it,   T = N^-1 J^T J_shapes.
 /// NaN on the diagonal where the data does not tell, 0 for parameters that were neither.
 void keepCovariance(Model&, const FitCurvature&, const ShapesLeft&);
