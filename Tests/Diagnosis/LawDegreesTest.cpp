@@ -131,7 +131,7 @@ TEST_CASE("A law goes beyond the 18th degree near the noise alone", "[diagnosis]
     for (auto& section : record.sections)  // of sensors so noisy that the same law leaves little beside it
         for (auto& channel : section.deviation)
             for (double& deviation : channel)
-                deviation *= 40.0;
+                deviation *= 30.0;
     CHECK(raisedFrom(18) == 22);
     record.noiseKnown = false;
     CHECK(raisedFrom(18) == 18);

@@ -135,6 +135,23 @@ private:
         search_.chooseResiduals(whole_.model);
         now_ = search_.left(whole_.model);
     }
+    /// Near the noise effects that are not there would explain what a model leaves that has not arrived yet.
+    void arrive()
+    {
+        constexpr int most = 3;
+        constexpr double worthIt = 0.95;
+        for (int n = 0; n < most && record_.noiseKnown && now_.chiSquaredPerValue < nearNoise && !isNoise(); ++n) {
+            auto further = whole_.model;
+            const auto fit = search_.fit(further);
+            if (!fit.usable())
+                return;
+            const auto then = search_.left(further);
+            if (then.channels.empty() || then.chiSquaredPerValue > worthIt * now_.chiSquaredPerValue)
+                return;
+            takeIn(std::move(further), fit);
+            now_ = then;
+        }
+    }
     void takeIn(Model model, const FitSummary& fit)
     {
         whole_.model = std::move(model);
@@ -161,8 +178,13 @@ Growth::Outcome Growth::byVote(const Progress& progress)
         if (std::exchange(begun_, true)) {  // laws of too low a degree hide what is small, and make others seem needed
             search_.raiseDegrees(whole_.model);
             now_ = search_.left(whole_.model);
+            arrive();
+            if (now_.chiSquaredPerValue < nearNoise && !isNoise())
+                byOtherStarts(progress.part(0.0, 0.2));
+            if (isNoise())
+                return Outcome::grown;
         }
-        asked_ = score(whole_.model, record_, search_.test(), progress.part(0.0, 0.4));
+        asked_ = score(whole_.model, record_, search_.test(), progress.part(0.2, 0.4));
     }
     if (asked_.scores.empty())
         return Outcome::stuck;
