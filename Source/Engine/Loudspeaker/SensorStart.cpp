@@ -88,6 +88,7 @@ void expect(Parameter& p, double prior, double lower)
     p.prior = prior;
     p.lower = lower;
     p.upper = most * prior;
+    p.value = std::clamp(p.value, p.lower, p.upper);  // of another take it may be outside
 }
 
 /// Displacement and velocity fall off with frequency.
@@ -113,8 +114,10 @@ void freeCorner(Model& model, const Record& record, Quantity motion)
     q.free = true;
     q.lower = lowestDamping;
     q.upper = highestDamping;
-    if (T.value != 0.0)
+    if (T.value != 0.0) {
+        q.value = std::clamp(q.value, q.lower, q.upper);
         return;
+    }
     // There nothing changes with either.
     const auto begin =
         cornerOf(model, linearResponsesOf(record), motion).value_or(withCorner(farAbove * end, std::numbers::sqrt2));
