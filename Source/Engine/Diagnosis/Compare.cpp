@@ -247,14 +247,13 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
     }
     result.chiSquaredPerValue = cost / std::max(1.0, rows);
     if (record.sectionsDrift) {
-        constexpr double most =
-            0.1;  // of its power: a wander is told to a few dB, as if it had the shape of what was played
+        constexpr double enough = 0.1;  // of a wander's power, which is told to a few dB
         result.sectionMoves = movesOf(fits);
         if (std::any_of(result.channels.begin(), result.channels.end(), [](const auto& c) { return c.wanderDb; })) {
             const auto moved = wanderByMoves(model, record, run);
             for (std::size_t c = 0; c < moved.size(); ++c)
                 if (auto& wander = result.channels[c].wanderDb;
-                    wander && moved[c] > most * std::pow(10.0, 0.1 * *wander))
+                    wander && moved[c] > enough * std::pow(10.0, 0.1 * *wander))
                     wander.reset();
         }
     }
