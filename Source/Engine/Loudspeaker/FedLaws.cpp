@@ -167,8 +167,8 @@ PathsByWindow pathsToChannels(const Model& model, const Record& record, const st
 PathsByWindow pathsToMotion(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                             unsigned threads)
 {
-    return pathsByWindow(withoutSensors(model), record, sections, {Quantity::current, Quantity::displacement}, true, false,
-                         threads);
+    return pathsByWindow(withoutSensors(model), record, sections, {Quantity::current, Quantity::displacement}, true,
+                         false, threads);
 }
 
 LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,

@@ -228,7 +228,8 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
     const auto paths = pathsToChannels(model, record, sections, gradient, options.threads);
-    const auto departures = departureResponses(model, record, sections, options.threads);
+    const auto departures = played ? DepartureResponses {}  // their prediction holds them
+                                   : departureResponses(model, record, sections, options.threads);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];

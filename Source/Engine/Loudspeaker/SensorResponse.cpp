@@ -37,15 +37,24 @@ std::complex<double> SensorResponse::logSlope(double SensorResponse::*by, std::c
     return by == &SensorResponse::further ? rolled : rolled + 1.0 / (s + rolledOff);
 }
 
-std::vector<SensorParameter> sensorParameters(Quantity quantity)
+std::span<const SensorParameter> sensorParameters(Quantity quantity)
 {
     using S = SensorResponse;
-    switch (quantity) {  // in the order of the path's parameters (Radiation.cpp)
-    case Quantity::current: return {{2, &S::lag}};
-    case Quantity::displacement: return {{3, &S::lag}, {6, &S::T}, {7, &S::q}};
-    case Quantity::velocity: return {{4, &S::lag}, {8, &S::T}, {9, &S::q}};
-    case Quantity::acceleration: return {{5, &S::lag}, {10, &S::T}, {11, &S::q}};
-    case Quantity::pressure: return {{12, &S::rolledOff}, {13, &S::further}};
+    // in the order of the path's parameters (Radiation.cpp)
+    static constexpr std::array current {SensorParameter {2, &S::lag}};
+    static constexpr std::array displacement {SensorParameter {3, &S::lag}, SensorParameter {6, &S::T},
+                                              SensorParameter {7, &S::q}};
+    static constexpr std::array velocity {SensorParameter {4, &S::lag}, SensorParameter {8, &S::T},
+                                          SensorParameter {9, &S::q}};
+    static constexpr std::array acceleration {SensorParameter {5, &S::lag}, SensorParameter {10, &S::T},
+                                              SensorParameter {11, &S::q}};
+    static constexpr std::array pressure {SensorParameter {12, &S::rolledOff}, SensorParameter {13, &S::further}};
+    switch (quantity) {
+    case Quantity::current: return current;
+    case Quantity::displacement: return displacement;
+    case Quantity::velocity: return velocity;
+    case Quantity::acceleration: return acceleration;
+    case Quantity::pressure: return pressure;
     case Quantity::voltage:
     case Quantity::force: break;
     }

@@ -4,6 +4,7 @@
 #include "Engine/Loudspeaker/Model.h"
 
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace excursion {
@@ -39,7 +40,7 @@ struct SensorParameter {
 };
 
 /// Those of a quantity: the lag of a current, lag, T and q of a motion, the corner of a pressure, none of a drive.
-std::vector<SensorParameter> sensorParameters(Quantity);
+std::span<const SensorParameter> sensorParameters(Quantity);
 
 /// That of a quantity; immediate where it has no such parameters.
 SensorResponse sensorOf(const Model&, Quantity);
