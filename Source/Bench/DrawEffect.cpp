@@ -173,6 +173,19 @@ VentedBox drawBox(double strength, const Loudspeaker& speaker, double f0, Random
     return box;
 }
 
+/// Up to as much loss at the cone's highest speed as the tuning's impedance would give times the strength, and air that
+/// stiffens by up to that.
+BoxFlow drawFlow(double strength, const VentedBox& box, const Visited& visited, Random& random)
+{
+    BoxFlow flow;
+    flow.power = random.uniform(1.8, 2.0);
+    const double loss = strength * std::sqrt(box.stiffness * box.mass) / std::pow(visited.velocity, flow.power - 1.0);
+    flow.outward = loss * random.uniform(0.5, 1.0);
+    flow.inward = loss * random.uniform(0.5, 1.0);
+    flow.length = visited.displacement / (0.3 * strength * random.uniform(0.3, 1.0));
+    return flow;
+}
+
 bool isChain(const HiddenEffect& effect, Random& random)
 {
     constexpr double share = 0.4;
@@ -253,7 +266,11 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
         speaker.coilHeating = drawHeating(strength, visited.power, random);
     else if (effect.id == "vented-box")
         speaker.ventedBox = drawBox(strength, speaker, f0, random);
-    else if (effect.id == "doppler") {
+    else if (effect.id == "port-and-air") {
+        if (!speaker.ventedBox)
+            speaker.ventedBox = drawBox(0.3, speaker, f0, random);
+        speaker.ventedBox->flow = drawFlow(strength, *speaker.ventedBox, visited, random);
+    } else if (effect.id == "doppler") {
         speaker.doppler = true;
         return visited.velocity / 343.0;
     } else if (effect.id == "cone-breakup")  // strength: change of the pressure at the resonance

@@ -11,6 +11,23 @@ double valueOf(const std::optional<Curve>& curve, double q) { return curve ? cur
 
 }  // namespace
 
+double VentedBox::pull(double w) const
+{
+    if (!flow)
+        return stiffness * w;
+    constexpr double gamma = 1.4;
+    return stiffness * flow->length / gamma * (1.0 - std::pow(1.0 + w / flow->length, -gamma));
+}
+
+double VentedBox::drag(double velocity) const
+{
+    const double laminar = resistance * velocity;
+    if (!flow)
+        return laminar;
+    const double loss = velocity > 0.0 ? flow->outward : flow->inward;
+    return laminar + std::copysign(loss * std::pow(std::abs(velocity), flow->power), velocity);
+}
+
 double Loudspeaker::forceFactorAt(double x) const { return Bl * valueOf(forceFactor, x); }
 
 double Loudspeaker::stiffnessAt(double x) const { return K * valueOf(stiffness, x); }
@@ -99,7 +116,8 @@ std::vector<std::string> Loudspeaker::effects() const
                           ventedBox.has_value(),
                           doppler,
                           !coneBreakup.empty(),
-                          !sideResonance.empty()};
+                          !sideResonance.empty(),
+                          ventedBox && ventedBox->flow};
     std::vector<std::string> ids;
     for (std::size_t n = 0; n < effectIds().size(); ++n)
         if (present[n])
@@ -124,10 +142,20 @@ Loudspeaker Loudspeaker::linear() const
 
 const std::vector<std::string>& effectIds()
 {
-    static const std::vector<std::string> ids {
-        "force-factor",  "stiffness", "inductance-position", "inductance-current", "eddy-currents", "damping-velocity",
-        "creep",         "friction",  "coil-heating",        "vented-box",         "doppler",       "cone-breakup",
-        "side-resonance"};
+    static const std::vector<std::string> ids {"force-factor",
+                                               "stiffness",
+                                               "inductance-position",
+                                               "inductance-current",
+                                               "eddy-currents",
+                                               "damping-velocity",
+                                               "creep",
+                                               "friction",
+                                               "coil-heating",
+                                               "vented-box",
+                                               "doppler",
+                                               "cone-breakup",
+                                               "side-resonance",
+                                               "port-and-air"};
     return ids;
 }
 

@@ -72,7 +72,16 @@ struct CoilHeating {
 ///     q = -stiffness (x + y + l) - absorption (x' + y' + l')   is the force on the cone,
 ///     mass y'' = q - resistance y' - spring y                  the port, or a passive radiator with a spring,
 ///     l' = q / leak                                            no leak if infinite,
-/// and the port's y'' is heard with the cone's x''.
+/// and the port's y'' is heard with the cone's x''. With `flow`, x + y + l = w compresses the air without exchange of
+/// heat, and a jet loses what the port's speed gave it:
+///     stiffness w is stiffness (1 - (1 + w/length)^-1.4) length/1.4,
+///     resistance y' is resistance y' + loss |y'|^power sign(y'), with a loss either way.
+struct BoxFlow {
+    double outward = 0.0, inward = 0.0;  ///< N (s/m)^power
+    double power = 2.0;
+    double length = 1.0;  ///< m, the box's volume over the cone's area
+};
+
 struct VentedBox {
     double stiffness = 0.0;                                 ///< N/m
     double mass = 0.0;                                      ///< kg
@@ -80,6 +89,10 @@ struct VentedBox {
     double leak = std::numeric_limits<double>::infinity();  ///< N s/m
     double absorption = 0.0;                                ///< N s/m, less than the leak's
     double spring = 0.0;                                    ///< N/m
+    std::optional<BoxFlow> flow {};
+
+    double pull(double w) const;         ///< N, of the air, without absorption
+    double drag(double velocity) const;  ///< N, against the port
 };
 
 /// r'' + (w/Q) r' + w^2 r = -x'', and gain r'' is heard with x'': a mode of the cone driven by its neck.

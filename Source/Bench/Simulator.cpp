@@ -247,9 +247,9 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
             for (int j = 0; j < 3; ++j) {
                 const double speed = portVelocity_ + h_ * portSpeed[j];
                 const double way = portPosition_ + h_ * (Radau::points()[j] * portVelocity_ + h_ * portWay[j]);
-                box_[j] = -box->stiffness * (x_[j] + way + leaked_ + h_ * leaked[j])
+                box_[j] = -box->pull(x_[j] + way + leaked_ + h_ * leaked[j])
                           - box->absorption * (v_[j] + speed + leak_[j]);
-                port_[j] = (box_[j] - box->resistance * speed - box->spring * way) / box->mass;
+                port_[j] = (box_[j] - box->drag(speed) - box->spring * way) / box->mass;
                 leak_[j] = box_[j] / box->leak;
             }
         }

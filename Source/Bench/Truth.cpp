@@ -80,6 +80,10 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
         return {{"stiffness", speaker.ventedBox->stiffness},   {"mass", speaker.ventedBox->mass},
                 {"resistance", speaker.ventedBox->resistance}, {"leak", speaker.ventedBox->leak},
                 {"absorption", speaker.ventedBox->absorption}, {"spring", speaker.ventedBox->spring}};
+    if (id == "port-and-air") {
+        const auto& flow = *speaker.ventedBox->flow;
+        return {{"outward", flow.outward}, {"inward", flow.inward}, {"power", flow.power}, {"length", flow.length}};
+    }
     if (id == "cone-breakup") {
         Json modes = Json::array();
         for (const auto& mode : speaker.coneBreakup)

@@ -50,6 +50,9 @@ struct Alone {
     explicit Alone(const Effect& which) : effect(which), operatingRange(someOperatingRange(someScale(which)))
     {
         double sign = 1.0;
+        if (const auto* host = effect.host())
+            for (const auto& p : host->parameters(operatingRange))
+                operatingRange.host.push_back(p.strength ? strengthOf(*host, p, operatingRange, 0.3) : p.value);
         for (const auto& p : effect.parameters(operatingRange)) {
             const double strength = p.lower == 0.0 ? 0.3 : 0.1 * (sign *= -1.0);
             parameters.push_back(p.strength ? strengthOf(effect, p, operatingRange, strength) : p.value);

@@ -239,5 +239,5 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
              "effect-friction "
              "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance target "
              "targetF0 "
-             "targetQ targetVolume coilResistance targetLow targetHigh coupling couplingOrder");
+             "targetQ targetVolume coilResistance targetLow targetHigh coupling couplingOrder effect-port-and-air");
 }

@@ -11,7 +11,8 @@ const std::vector<const Effect*>& catalogue()
     static const std::vector<const Effect*> effects {
         &forceFactor(),     &stiffness(),         &inductancePosition(), &eddyCurrents(), &creep(),
         &dampingVelocity(), &inductanceCurrent(), &friction(),           &coilHeating(),  &ventedBox(),
-        &doppler(),         &coneBreakup(),       &sideResonance()};
+        &doppler(),         &coneBreakup(),       &sideResonance(),
+        &portAndAir()};
     return effects;
 }
 

@@ -77,6 +77,7 @@ struct OperatingRange {
     /// relaxed parameters may differ from zero; false saves the memory that they need
     bool relaxed = true;
     bool joint = true;  ///< joint parameters may differ from zero: another law of the same base parameter is there
+    std::vector<double> host;  ///< parameters of the effect within which it acts, see Effect::host(); not in files
 };
 
 struct Parameter {
@@ -223,6 +224,10 @@ public:
     /// Name of the base parameter that makes OperatingRange::scale (see resize()); for a law, the one that it modifies.
     /// Empty: none.
     virtual std::string sizedBy() const;
+
+    /// The linear effect within which it acts, whose parameters it is told by OperatingRange::host. It does nothing in
+    /// a model without that effect.
+    virtual const Effect* host() const { return nullptr; }
 
     virtual int memorySize(const OperatingRange&) const { return 0; }  ///< extra states
     /// The memory changes little within a period: its content depends on the whole take before. Its rate must be affine

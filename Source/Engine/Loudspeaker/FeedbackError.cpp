@@ -3,6 +3,7 @@
 
 #include "Engine/Loudspeaker/Arrival.h"
 #include "Engine/Loudspeaker/DepartureResponse.h"
+#include "Engine/Loudspeaker/SensorResponse.h"
 #include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
@@ -47,6 +48,9 @@ public:
         fit.finite = true;
         for (std::size_t c = 0; c < channels; ++c) {
             predicted.push_back(sum(c, fed_.voltage, fed_.force));
+            if (record_.channels[c] == Quantity::pressure)
+                for (const auto& law : fed_.laws)
+                    radiate(predicted[c], law.flow);
             const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted[c]);
             if (options.gradient && !active.empty())
                 J.push_back(columns(c, active, heard));
@@ -102,6 +106,25 @@ private:
         return result;
     }
 
+    /// What the microphone hears of each line that leaves beside the cone, Pa per m/s^2.
+    const Spectrum& heardOf()
+    {
+        const auto sensor = sensorOf(model_, Quantity::pressure);
+        const double gain = radiationPerArea() / model_.microphoneDistance * model_.path.parameters.front().value;
+        for (std::size_t k = heardOf_.size(); k < fed_.voltage.size(); ++k) {
+            const Complex s(0.0, 2.0 * std::numbers::pi * record_.frequency(section_, k));
+            heardOf_.push_back(k > 0 ? gain * std::exp(-s * paths_.lateness) * sensor(s) : 0.0);
+        }
+        return heardOf_;
+    }
+
+    /// Adds what leaves beside the cone.
+    void radiate(Spectrum& sound, const Spectrum& flow)
+    {
+        if (!flow.empty())
+            lines(sound) += lines(heardOf()) * lines(flow);
+    }
+
     /// The spectrum of what leaves the cone, of what arrives as late as at rest.
     Spectrum leaving(Spectrum sound) const
     {
@@ -123,7 +146,7 @@ private:
     bool hear(Spectrum& sound)
     {
         for (const auto& law : fed_.laws) {
-            if (law.lateness.empty())
+            if (!law.isLate())
                 continue;
             if (onTheWay_.empty())
                 for (std::size_t k = 0; k < sound.size(); ++k)
@@ -141,6 +164,7 @@ private:
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(residual_.rows(), static_cast<Eigen::Index>(active.size()));
         Spectrum slope;
+        const Spectrum nothing;
         const auto add = [&](const Spectrum& path, double sign, const Spectrum& drive) {
             if (!path.empty() && !drive.empty())
                 lines(slope) += sign * lines(path, paths_.first) * lines(drive);
@@ -178,11 +202,14 @@ private:
             const auto& slopes = *fed_.laws[law].slopes;
             const auto &U = slopes.voltage[own], &F = slopes.force[own];
             const auto& lateness = slopes.lateness[own];
-            if (U.empty() && F.empty() && lateness.empty())
+            const auto& flow = record_.channels[c] == Quantity::pressure ? slopes.flow[own] : nothing;
+            if (U.empty() && F.empty() && flow.empty() && lateness.empty())
                 continue;
             add(byForce.value, 1.0, F);
             if (model_.electrical())
                 add(byVoltage.value, -1.0, U);
+            if (!flow.empty())
+                lines(slope) += lines(heardOf_) * lines(flow);
             if (heard && !lateness.empty()) {
                 auto change = lateness;
                 for (std::size_t n = 0; n < change.size(); ++n)
@@ -205,6 +232,7 @@ private:
     const DepartureResponse* departures_;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
+    Spectrum heardOf_;   ///< of a line that leaves beside the cone, once it is asked for
     Spectrum onTheWay_;  ///< what the way to the microphone makes of a line, once it is asked for
 };
 

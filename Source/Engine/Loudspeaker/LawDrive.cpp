@@ -20,7 +20,7 @@ MotionView viewOf(const ShownMotion& motion) { return {motion.i, motion.x, motio
 /// What a law answers along a motion: one value a sample.
 template <class T>
 struct Answers {
-    std::vector<T> voltage, force, lateness;
+    std::vector<T> voltage, force, flow, lateness;
     std::vector<T> memory;  ///< where the window begins
 };
 
@@ -51,6 +51,7 @@ public:
         Emission<T> emission;
         law_.effect->emit(law_.operatingRange, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]),
                           memory, rate, emission);
+        answers.flow.push_back(emission.acceleration);
         answers.lateness.push_back(emission.lateness);
     }
 
@@ -149,11 +150,16 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
     return result;
 }
 
+bool isZero(const std::vector<double>& samples)
+{
+    return std::all_of(samples.begin(), samples.end(), [](double sample) { return sample == 0.0; });
+}
+
 /// The first lines of a spectrum; none of what is zero.
 /// @param thinned  of so many samples one is there
 Spectrum firstLines(const std::vector<double>& samples, std::size_t lines, std::size_t thinned)
 {
-    if (std::all_of(samples.begin(), samples.end(), [](double sample) { return sample == 0.0; }))
+    if (isZero(samples))
         return {};
     auto spectrum = fft(samples);
     spectrum.resize(std::min(lines, spectrum.size()));
@@ -194,6 +200,14 @@ std::vector<double> slopesAt(const Component& law, const std::vector<Jet>& param
 }
 
 }  // namespace
+
+bool LawDrive::isLate() const
+{
+    return !isZero(lateness)
+           || (slopes && std::any_of(slopes->lateness.begin(), slopes->lateness.end(), [](const auto& slope) {
+                   return !slope.empty();
+               }));
+}
 
 bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double sampleRate)
 {
@@ -237,6 +251,8 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, grid);
     drive.voltage = fft(plain.voltage);
     drive.force = fft(plain.force);
+    if (!isZero(plain.flow))
+        drive.flow = fft(plain.flow);
     drive.lateness = plain.lateness;
     if (std::none_of(wanted.begin(), wanted.end(), [](bool w) { return w; }))
         return drive;
@@ -245,6 +261,7 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     slopes->wanted = wanted;
     slopes->voltage.resize(count);
     slopes->force.resize(count);
+    slopes->flow.resize(count);
     slopes->lateness.resize(count);
     // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
     // more of that than a quarter.
@@ -270,7 +287,10 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
             const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
             slopes->voltage[own[j]] = firstLines(series(jets.voltage, slope), lines, thinned);
             slopes->force[own[j]] = firstLines(series(jets.force, slope), lines, thinned);
+            slopes->flow[own[j]] = firstLines(series(jets.flow, slope), lines, thinned);
             slopes->lateness[own[j]] = series(jets.lateness, slope);
+            if (isZero(slopes->lateness[own[j]]))
+                slopes->lateness[own[j]].clear();
         }
         own.clear();
     };

@@ -14,9 +14,9 @@ namespace excursion {
 
 /// The derivatives of a law's contribution by its own parameters, one entry each. Empty if not asked for or zero.
 struct LawSlopes {
-    std::vector<double> at;                ///< the law's parameters where they were taken
-    std::vector<bool> wanted;              ///< of these, those that were differentiated by
-    std::vector<Spectrum> voltage, force;  ///< the first lines, as many as asked for
+    std::vector<double> at;                      ///< the law's parameters where they were taken
+    std::vector<bool> wanted;                    ///< of these, those that were differentiated by
+    std::vector<Spectrum> voltage, force, flow;  ///< the first lines, as many as asked for
     std::vector<std::vector<double>> lateness;
 };
 
@@ -24,8 +24,11 @@ struct LawSlopes {
 struct LawDrive {
     Spectrum voltage;                         ///< drop + fluxSlope v + inductance di/dt, V
     Spectrum force;                           ///< force - mass dv/dt, N
-    std::vector<double> lateness;             ///< s, one value per sample; empty if the law adds no lateness
+    Spectrum flow;                            ///< m/s^2, what it adds to the emission beside the cone; empty if nothing
+    std::vector<double> lateness;             ///< s, one value per sample; empty if the law emits nothing
     std::shared_ptr<const LawSlopes> slopes;  ///< none unless asked for
+
+    bool isLate() const;  ///< it adds lateness, or its slopes do, which may be at no strength yet
 };
 
 /// Whether the slopes of a law depend on the motion alone: it is linear in its parameters and has no memory. Tried at

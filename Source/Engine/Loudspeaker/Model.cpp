@@ -155,6 +155,7 @@ Model withComponent(Model model, Component component)
 {
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
+    tellHosts(model);
     return model;
 }
 
@@ -173,6 +174,15 @@ void resize(Model& model, std::size_t k)
         component.parameters[n].prior = sized[n].prior;
 }
 
+void tellHosts(Model& model)
+{
+    for (auto& component : model.components)
+        if (const auto* host = component.effect->host()) {
+            const auto* within = model.find(host->id());
+            component.operatingRange.host = within ? valuesOf(*within) : std::vector<double> {};
+        }
+}
+
 void followOthers(Model& model)
 {
     const bool coil = relaxes(model, true), suspension = relaxes(model, false);
@@ -183,11 +193,14 @@ void followOthers(Model& model)
                component.effect->electrical() ? coil : suspension);
         follow(component, &Parameter::joint, &OperatingRange::joint, sharesBase(model, *component.effect));
     }
+    tellHosts(model);
 }
 
 Model withoutEffect(Model model, std::string_view effectId)
 {
-    std::erase_if(model.components, [&](const Component& c) { return c.effect->id() == effectId; });
+    std::erase_if(model.components, [&](const Component& c) {
+        return c.effect->id() == effectId || (c.effect->host() && c.effect->host()->id() == effectId);
+    });
     model.covariance.resize(0, 0);
     return model;
 }
@@ -270,6 +283,7 @@ void setParameterVector(Model& model, const Eigen::VectorXd& values)
     const auto all = parametersOf(model);
     for (std::size_t k = 0; k < all.size(); ++k)
         all[k]->value = values[static_cast<Eigen::Index>(k)];
+    tellHosts(model);
 }
 
 }  // namespace excursion

@@ -91,6 +91,9 @@ void resize(Model&, std::size_t k);
 /// Adjusts every component to the others: resizes it, and parameters that have a meaning only with other effects are
 /// free if these are present, or else zero.
 void followOthers(Model&);
+/// Tells each component the parameters of the effect within which it acts (Effect::host()).
+void tellHosts(Model&);
+/// The model without an effect, and without those that act within it (Effect::host()).
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);

@@ -240,6 +240,7 @@ Model modelFromJson(const JsonField& field)
     const auto path = field.at("path");
     model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);
     model.microphoneDistance = path.at("microphoneDistance").numberWithin(1e-6, 1e6);
+    tellHosts(model);
     model.covariance = covarianceFrom(field.at("covariance"), placesGiven(field, model), parameterVector(model).size());
     return model;
 }

@@ -45,6 +45,14 @@ std::string whyUnseen(const Effect& effect, const Seen& seen)
     return "";
 }
 
+std::string whyHomeless(const Effect& effect, const Model& model)
+{
+    const auto* host = effect.host();
+    return !host || model.has(host->id()) ? ""
+                                          : "The effect \"" + effect.id() + "\" acts within \"" + host->id()
+                                                + "\", which the model has not; add that first.";
+}
+
 void requireSameKind(const Model& model, const Seen& seen)
 {
     if (model.electrical() == seen.coil)

@@ -5,7 +5,7 @@
 
 namespace excursion {
 
-// One file each beside this one. Only the catalogue includes this header.
+// One file each beside this one. Only they and the catalogue include this header.
 const Effect& forceFactor();
 const Effect& stiffness();
 const Effect& inductancePosition();
@@ -19,5 +19,6 @@ const Effect& ventedBox();
 const Effect& doppler();
 const Effect& coneBreakup();
 const Effect& sideResonance();
+const Effect& portAndAir();
 
 }  // namespace excursion

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Effects/Effects.h"
+#include "Engine/Loudspeaker/Effects/SharedAir.h"
 
 #include "Engine/Loudspeaker/Network.h"
 
@@ -13,22 +14,15 @@
 namespace excursion {
 namespace {
 
-/// An air spring that cone and port share [Small, Vented-Box Loudspeaker Systems, J. Audio Eng. Soc. 21, 1973]. All
-/// displacements are volumes over the cone's area, positive outward: x of the cone, y of the port, l of what leaks; w =
-/// x + y + l expands the air, which pulls with Ka w. A passive radiator of mass mp has a spring Kp besides, r = Kp/Ka;
-/// an open port has none.
-///     port:   mp d2y/dt2 = -Ka (w + dA/wB dw/dt) - Kp y - mp wB dP dy/dt,     wB^2 = (Ka + Kp)/mp,   dP = 1/QP
-///     leak:   dl/dt = -wB dL (w + dA/wB dw/dt),                               dL = 1/QL; dA = 1/QA is absorption
-/// At rest, without a leak, x, y and the radiator share the spring's pull, so that the box adds Ka r/(1 + r) to the
-/// stiffness, and far above the tuning Ka, of which Kb = Ka/(1 + r) is the difference. The base's K stays the stiffness
-/// at rest, with the box in it:
-///     force:  -Ka (w + dA/wB dw/dt) + Kb r x
+/// The air spring that cone and port share (SharedAir.h). At rest, without a leak, x, y and the radiator share the
+/// spring's pull, so that the box adds Ka r/(1 + r) to the stiffness, and far above the tuning Ka, of which Kb = Ka/(1
+/// + r) is the difference. The base's K stays the stiffness at rest, with the box in it:
+///     force:  -Ka pull + Kb r x
 /// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's
 /// notch is at fB sqrt(r/(1 + r)). The microphone hears the cone, and the port as much as its place lets it: `port` is
-/// 1 far away, less close to the cone. The memory is w, dy/dt and y, and does not depend on Kb, which is a strength.
-/// The radiator's spring yields below a thousandth of the lowest frequency of interest, so that nothing integrates for
-/// ever. A closed box adds to K alone, until its air gets out through a leak, which is a port that does not ring: what
-/// is left below its tuning is the suspension alone.
+/// 1 far away, less close to the cone. The memory does not depend on Kb, which is a strength. A closed box adds to K
+/// alone, until its air gets out through a leak, which is a port that does not ring: what is left below its tuning is
+/// the suspension alone.
 class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
     VentedBox()
@@ -114,56 +108,42 @@ public:
                && own[0].value > leastLeakStiffness * K && own[0].value < mostLeakStiffness * K;
     }
 
-    int memorySize(const OperatingRange&) const override { return 3; }
-    int coefficientCount(const OperatingRange&) const override { return 8; }
+    int memorySize(const OperatingRange&) const override { return sharedair::states; }
+    int coefficientCount(const OperatingRange&) const override { return sharedair::coefficients; }
 
-    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the
-    /// end of what was measured where a search that finds nothing runs away with it.
     template <class T>
     void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
-        const T w = 2.0 * std::numbers::pi * atMost(e.highFrequency, p[1]), &r = p[5];
-        c[0] = p[0] * (1.0 + r);
-        c[1] = p[0] * r;
-        c[2] = w * w / (1.0 + r);
-        c[3] = w * p[2];
-        c[4] = c[2] * r;
-        c[5] = w * p[3];
-        c[6] = p[4] / w;
-        c[7] = p[6];
+        sharedair::prepare(e, p, c);
     }
 
     template <class T>
     void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
                Balance<T>& sum) const
     {
-        const T &w = memory[0], &vy = memory[1], &y = memory[2];
-        rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);  // dw/dt = v + dy/dt + dl/dt, solved
-        const T pull = w + c[6] * rate[0];
-        rate[1] = -c[2] * pull - c[3] * vy - c[4] * y;
-        rate[2] = vy - yield * e.lowFrequency * y;
-        sum.force += c[1] * at.x - c[0] * pull;
+        const T pull = sharedair::pull(e, c, at.v, T(0.0), memory, rate);
+        sum.force += c[sharedair::springAtRest] * at.x - c[sharedair::Ka] * pull;
     }
 
     /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward
     /// as the cone moves outward; the port's mass, losses and, of a radiator, its spring with what it yields.
     void draw(const OperatingRange& e, const double* c, NetworkDrawing& into) const override
     {
-        const double Ka = c[0];
+        const double Ka = c[sharedair::Ka];
         if (Ka == 0.0)
             return;
-        const double portMass = Ka / c[2], leak = c[5] / Ka;  // leak: velocity over force
+        const double portMass = Ka / c[sharedair::byPull], leak = c[sharedair::leak] / Ka;  // velocity over force
         const std::string air = leak > 0.0 ? "air" : "port";
-        into.spring(Network::cone, Network::ground, -c[1]);
+        into.spring(Network::cone, Network::ground, -c[sharedair::springAtRest]);
         into.spring(Network::cone, air, Ka);
-        into.damper(Network::cone, air, Ka * c[6]);
+        into.damper(Network::cone, air, Ka * c[sharedair::absorption]);
         if (leak > 0.0)
             into.damper(air, "port", 1.0 / leak);
         into.mass("port", portMass);
-        into.damper("port", Network::ground, portMass * c[3]);
-        if (c[4] > 0.0) {
-            into.spring("port", "radiator", portMass * c[4]);
-            into.damper("radiator", Network::ground, portMass * c[4] / (yield * e.lowFrequency));
+        into.damper("port", Network::ground, portMass * c[sharedair::portLoss]);
+        if (const double spring = portMass * c[sharedair::radiator]; spring > 0.0) {
+            into.spring("port", "radiator", spring);
+            into.damper("radiator", Network::ground, spring / (sharedair::yield * e.lowFrequency));
         }
     }
     bool ofEnclosure() const override { return true; }
@@ -172,11 +152,11 @@ public:
     void radiate(const OperatingRange&, const T* c, const Motion<T>&, const T&, const T*, const T* rate,
                  Emission<T>& sum) const
     {
-        sum.acceleration += c[7] * rate[1];
+        sum.acceleration += c[sharedair::share] * rate[sharedair::portVelocity];
     }
 
 private:
-    static constexpr double someLoss = 0.1, yield = 2.0 * std::numbers::pi * 0.001;
+    static constexpr double someLoss = 0.1;
 };
 
 }  // namespace

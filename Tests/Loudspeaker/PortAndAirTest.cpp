@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the air in a box and in its port does beyond the linear box, against the independent bench.
+#include "Bench/Bench.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Loudspeaker/Simulate.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace excursion;
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi, rate = 48000.0;
+
+struct Boxed {
+    bench::Loudspeaker speaker;
+    Model model;
+};
+
+/// A midbass in a box, on the bench and as a model: Kb, fB, 1/QP, 1/QL, 1/QA; loss either way in s/m and S in 1/m.
+Boxed boxed(double outward, double inward, double S)
+{
+    const double Kb = 2400.0, fB = 38.0, dP = 0.08, dL = 0.12, dA = 0.03, wB = turn * fB;
+    Boxed both;
+    OperatingRange range;
+    range.displacement = 4e-3;
+    range.lowFrequency = 5.0;
+    range.highFrequency = 10e3;
+    both.model = withEffect(makeModel("electrodynamic"), effectNamed("vented-box"), range);
+    const double box[] {Kb, fB, dP, dL, dA, 0.0, 1.0}, beyond[] {outward, inward, S};
+    for (std::size_t k = 0; k < 7; ++k)
+        both.model.components.back().parameters[k].value = box[k];
+    both.model = withEffect(both.model, effectNamed("port-and-air"), range);
+    for (std::size_t k = 0; k < 3; ++k)
+        both.model.components.back().parameters[k].value = beyond[k];
+    auto& speaker = both.speaker;
+    for (auto [to, name] : {std::pair {&speaker.Re, "Re"},
+                            {&speaker.Le, "Le"},
+                            {&speaker.Bl, "Bl"},
+                            {&speaker.m, "m"},
+                            {&speaker.Rms, "Rms"},
+                            {&speaker.K, "K"}})
+        *to = both.model.baseParameter(name).value;
+    const double mass = Kb / (wB * wB);
+    speaker.ventedBox = bench::VentedBox {Kb, mass, mass * wB * dP, Kb / (wB * dL), Kb * dA / wB, 0.0};
+    speaker.ventedBox->flow = bench::BoxFlow {mass * wB * outward, mass * wB * inward, 2.0, 1.0 / std::max(S, 1e-9)};
+    speaker.coneArea = both.model.path.parameters[0].value;
+    return both;
+}
+
+/// Half a second of tones around the tuning, V.
+std::vector<double> tones()
+{
+    std::vector<double> u;
+    for (int n = 0; n < static_cast<int>(0.5 * rate); ++n) {
+        double sum = 0.0;
+        for (const double f : {22.0, 31.0, 38.0, 57.0, 110.0})
+            sum += 4.0 * std::sin(turn * f * n / rate + f);
+        u.push_back(sum * std::min(1.0, n / (0.02 * rate)));
+    }
+    return u;
+}
+
+double relativeDb(const std::vector<double>& a, const std::vector<double>& b)
+{
+    double error = 0.0, power = 0.0;
+    for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
+        error += (a[n] - b[n]) * (a[n] - b[n]);
+        power += b[n] * b[n];
+    }
+    return 10.0 * std::log10(error / power);
+}
+
+}  // namespace
+
+TEST_CASE("A turbulent port and air without exchange of heat move the model as the bench's loudspeaker", "[effects]")
+{
+    const auto [outward, inward, S] = GENERATE(
+        table<double, double, double>({{0.4, 0.1, 0.0}, {0.1, 0.4, 0.0}, {0.0, 0.0, 12.0}, {0.3, 0.2, 12.0}}));
+    INFO(outward << " and " << inward << " s/m, " << S << " 1/m");
+    const auto [speaker, model] = boxed(outward, inward, S);
+    auto linear = speaker;
+    linear.ventedBox->flow.reset();
+    const auto u = tones();
+    const std::vector quantities {Quantity::current, Quantity::displacement, Quantity::pressure};
+    const auto truth = bench::play(speaker, u, rate, quantities),
+               plain = bench::play(linear, u, rate, quantities);
+    SimulationOptions options;
+    options.tolerance = 1e-6;
+    const auto simulated = simulate(model, u, rate, options);
+    for (const auto quantity : {Quantity::current, Quantity::displacement}) {
+        INFO(name(quantity));
+        const auto& y = truth.find(quantity)->samples;
+        CHECK(relativeDb(plain.find(quantity)->samples, y) > -50.0);
+        CHECK(relativeDb(simulated.find(quantity)->samples, y) < -80.0);
+    }
+}
+
+TEST_CASE("Without its box what is within it does nothing, and goes with it", "[effects]")
+{
+    const auto model = boxed(0.3, 0.2, 12.0).model;
+    CHECK(withoutEffect(model, "vented-box").effectIds().empty());
+    CHECK(withoutEffect(model, "port-and-air").effectIds() == std::vector<std::string> {"vented-box"});
+    const auto alone = withEffect(makeModel("electrodynamic"), effectNamed("port-and-air"), {});
+    auto strong = alone;
+    for (auto& p : strong.components.back().parameters)
+        p.value = 0.3;
+    const auto u = tones();
+    CHECK(relativeDb(simulate(strong, u, rate, {}).find(Quantity::displacement)->samples,
+                     simulate(alone, u, rate, {}).find(Quantity::displacement)->samples)
+          < -200.0);
+    CHECK_THAT(whyHomeless(effectNamed("port-and-air"), makeModel("electrodynamic")), Catch::Contains("vented-box"));
+    CHECK(whyHomeless(effectNamed("port-and-air"), model).empty());
+    CHECK(whyHomeless(effectNamed("stiffness"), makeModel("electrodynamic")).empty());
+}
+
+TEST_CASE("A box that a fit moves takes along what is within it", "[effects]")
+{
+    auto model = boxed(0.3, 0.2, 12.0).model;
+    auto theta = parameterVector(model);
+    const auto fB = firstParameterOf(model, 1) + 1;
+    theta[fB] = 45.0;
+    setParameterVector(model, theta);
+    CHECK(model.components[2].operatingRange.host.at(1) == 45.0);
+}
