@@ -46,7 +46,7 @@ Processor::Processor()
       })
 {
     latency_ = Chain(model_, options(), {}).latency();  // the same at every rate
-    setLatencySamples(latency_);
+    setLatency();
 }
 
 Processor::~Processor()
@@ -199,6 +199,14 @@ void Processor::put(const AnyModel& model, const std::stop_token& stop)
     tellLatency();
 }
 
+/// A host may prepare on another thread while the message thread tells what it knows already.
+void Processor::setLatency()
+{
+    const int now = latency_;
+    if (setLatency_.exchange(now) != now)
+        setLatencySamples(now);
+}
+
 /// At once on the message thread, else there as soon as it can.
 void Processor::tellLatency()
 {
@@ -210,7 +218,7 @@ void Processor::tellLatency()
 
 void Processor::handleAsyncUpdate()
 {
-    setLatencySamples(latency_);
+    setLatency();
     if (tellsState_.exchange(false))
         tellHostOfState();
 }
@@ -248,7 +256,7 @@ void Processor::prepareToPlay(double sampleRate, int)
     }
     // Whoever prepares asks for it next, whichever thread that is, and may have no message loop.
     cancelPendingUpdate();
-    setLatencySamples(latency_);
+    setLatency();
     if (tellsState_)  // which was cancelled with it
         triggerAsyncUpdate();
 }

@@ -118,6 +118,7 @@ private:
     std::pair<std::uint64_t, AmplifierCoupling> toBuild() const;
     void followSwitches();
     int start();
+    void setLatency();
     void tellLatency();
     void handleAsyncUpdate() override;
     void work(const std::stop_token&);
@@ -131,8 +132,9 @@ private:
     Model model_;
     LoadedBoxPointer box_;  ///< null: the driver plays
     std::atomic<std::uint64_t> modelVersion_ {1};
-    double sampleRate_ = 0.0;       ///< 0: not prepared
-    std::atomic<int> latency_ {0};  ///< samples; what the host has been told, or is about to be
+    double sampleRate_ = 0.0;           ///< 0: not prepared
+    std::atomic<int> latency_ {0};      ///< samples; what the host has been told, or is about to be
+    std::atomic<int> setLatency_ {-1};  ///< the last that was set
     /// what chains were built with: the switches of the effects, and the amplifier
     std::pair<std::uint64_t, AmplifierCoupling> built_ {};
     std::string standstill_;

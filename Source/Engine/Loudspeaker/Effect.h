@@ -77,7 +77,7 @@ struct OperatingRange {
     /// relaxed parameters may differ from zero; false saves the memory that they need
     bool relaxed = true;
     bool joint = true;  ///< joint parameters may differ from zero: another law of the same base parameter is there
-    std::vector<double> host;  ///< parameters of the effect within which it acts, see Effect::host(); not in files
+    std::vector<double> host {};  ///< parameters of the effect within which it acts, see Effect::host(); not in files
 };
 
 struct Parameter {
