@@ -49,8 +49,7 @@ public:
         for (std::size_t c = 0; c < channels; ++c) {
             predicted.push_back(sum(c, fed_.voltage, fed_.force));
             if (record_.channels[c] == Quantity::pressure)
-                for (const auto& law : fed_.laws)
-                    radiate(predicted[c], law.flow);
+                radiate(predicted[c]);
             const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted[c]);
             if (options.gradient && !active.empty())
                 J.push_back(columns(c, active, heard));
@@ -106,23 +105,20 @@ private:
         return result;
     }
 
-    /// What the microphone hears of each line that leaves beside the cone, Pa per m/s^2.
-    const Spectrum& heardOf()
+    /// Adds the sound that laws make beside the cone.
+    void radiate(Spectrum& sound)
     {
+        if (std::none_of(fed_.laws.begin(), fed_.laws.end(), [](const LawDrive& law) { return law.radiates(); }))
+            return;
         const auto sensor = sensorOf(model_, Quantity::pressure);
         const double gain = radiationPerArea() / model_.microphoneDistance * model_.path.parameters.front().value;
-        for (std::size_t k = heardOf_.size(); k < fed_.voltage.size(); ++k) {
+        for (std::size_t k = 0; k < fed_.voltage.size(); ++k) {
             const Complex s(0.0, 2.0 * std::numbers::pi * record_.frequency(section_, k));
             heardOf_.push_back(k > 0 ? gain * std::exp(-s * paths_.lateness) * sensor(s) : 0.0);
         }
-        return heardOf_;
-    }
-
-    /// Adds what leaves beside the cone.
-    void radiate(Spectrum& sound, const Spectrum& flow)
-    {
-        if (!flow.empty())
-            lines(sound) += lines(heardOf()) * lines(flow);
+        for (const auto& law : fed_.laws)
+            if (!law.flow.empty())
+                lines(sound) += lines(heardOf_) * lines(law.flow);
     }
 
     /// The spectrum of what leaves the cone, of what arrives as late as at rest.
@@ -232,7 +228,7 @@ private:
     const DepartureResponse* departures_;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
-    Spectrum heardOf_;   ///< of a line that leaves beside the cone, once it is asked for
+    Spectrum heardOf_;   ///< Pa per m/s^2 of a line that leaves beside the cone, where any does
     Spectrum onTheWay_;  ///< what the way to the microphone makes of a line, once it is asked for
 };
 

@@ -155,6 +155,12 @@ bool isZero(const std::vector<double>& samples)
     return std::all_of(samples.begin(), samples.end(), [](double sample) { return sample == 0.0; });
 }
 
+template <class Series>
+bool areEmpty(const std::vector<Series>& all)
+{
+    return std::all_of(all.begin(), all.end(), [](const Series& one) { return one.empty(); });
+}
+
 /// The first lines of a spectrum; none of what is zero.
 /// @param thinned  of so many samples one is there
 Spectrum firstLines(const std::vector<double>& samples, std::size_t lines, std::size_t thinned)
@@ -201,13 +207,8 @@ std::vector<double> slopesAt(const Component& law, const std::vector<Jet>& param
 
 }  // namespace
 
-bool LawDrive::isLate() const
-{
-    return !isZero(lateness)
-           || (slopes && std::any_of(slopes->lateness.begin(), slopes->lateness.end(), [](const auto& slope) {
-                   return !slope.empty();
-               }));
-}
+bool LawDrive::isLate() const { return !isZero(lateness) || (slopes && !areEmpty(slopes->lateness)); }
+bool LawDrive::radiates() const { return !flow.empty() || (slopes && !areEmpty(slopes->flow)); }
 
 bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double sampleRate)
 {

@@ -28,7 +28,9 @@ struct LawDrive {
     std::vector<double> lateness;             ///< s, one value per sample; empty if the law emits nothing
     std::shared_ptr<const LawSlopes> slopes;  ///< none unless asked for
 
-    bool isLate() const;  ///< it adds lateness, or its slopes do, which may be at no strength yet
+    /// Whether it adds lateness, or sound beside the cone, or its slopes do, which may be at no strength yet.
+    bool isLate() const;
+    bool radiates() const;
 };
 
 /// Whether the slopes of a law depend on the motion alone: it is linear in its parameters and has no memory. Tried at

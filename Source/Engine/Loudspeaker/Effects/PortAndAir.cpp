@@ -27,8 +27,8 @@ public:
              .title = "Port flow and box air at high level",
              .physics = "Air that leaves the port in a jet loses its energy, the more the faster it is, and air in a "
                         "small box is stiffer when compressed than when expanded.",
-             .symptoms = "around the tuning of the box the response compresses at high level, with a third harmonic; "
-                         "with stiff air a second harmonic where the cone moves far",
+             .symptoms = "a response that is compressed at high level around the tuning of the box, with a third "
+                         "harmonic; with stiff air a second harmonic where the cone moves far",
              .remedy = "A wider port with flared ends, or a passive radiator; a larger box.",
              .electrical = false,
              .linear = false})
