@@ -16,7 +16,7 @@ double VentedBox::pull(double w) const
     if (!flow)
         return stiffness * w;
     constexpr double gamma = 1.4;
-    return stiffness * flow->length / gamma * (1.0 - std::pow(1.0 + w / flow->length, -gamma));
+    return -stiffness * flow->length / gamma * std::expm1(-gamma * std::log1p(w / flow->length));
 }
 
 double VentedBox::drag(double velocity) const
