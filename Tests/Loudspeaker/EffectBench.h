@@ -45,18 +45,20 @@ inline double strengthOf(const Effect& effect, const Parameter& p, const Operati
     return share * std::min(effect.law() || !std::isfinite(p.prior) ? operatingRange.scale : p.prior, p.upper);
 }
 
-/// One effect on its own, with parameters that make it strong, asked at any state.
+/// One effect on its own, with parameters that make it strong, and its host's behind them, asked at any state.
 struct Alone {
     explicit Alone(const Effect& which) : effect(which), operatingRange(someOperatingRange(someScale(which)))
     {
         double sign = 1.0;
-        if (const auto* host = effect.host())
-            for (const auto& p : host->parameters(operatingRange))
-                operatingRange.host.push_back(p.strength ? strengthOf(*host, p, operatingRange, 0.3) : p.value);
         for (const auto& p : effect.parameters(operatingRange)) {
             const double strength = p.lower == 0.0 ? 0.3 : 0.1 * (sign *= -1.0);
             parameters.push_back(p.strength ? strengthOf(effect, p, operatingRange, strength) : p.value);
         }
+        if (const auto* host = effect.host())
+            for (const auto& p : host->parameters(operatingRange)) {
+                operatingRange.host.push_back(p.strength ? strengthOf(*host, p, operatingRange, 0.3) : p.value);
+                parameters.push_back(operatingRange.host.back());
+            }
         prepare();
     }
 

@@ -62,7 +62,7 @@ TEST_CASE("An effect of zero strength adds nothing", "[effects]")
         INFO(effect->id());
         Alone alone(*effect);
         for (const auto& start : effect->starts(alone.operatingRange)) {
-            alone.parameters = start;
+            std::copy(start.begin(), start.end(), alone.parameters.begin());
             alone.prepare();
             auto memory = alone.rest(), rate = memory;
             for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {

@@ -44,14 +44,20 @@ NormalEquations sumOfFinite(const std::vector<SectionFit>& fits)
     return *sum;
 }
 
-/// All laws of the catalogue that a small cone has, and Doppler, at some strength. Slow ones and friction have their
-/// memories from before.
+/// All laws of the catalogue that a small cone has, and Doppler, at some strength, with the box that one acts within.
+/// Slow ones and friction have their memories from before.
 Model bent(Model model, const Record& record, const std::string& only = "")
 {
     const auto operatingRange = visitedRange(model, record, 3);
     for (const auto* effect : catalogue()) {
         if (effect->linear() || (!only.empty() && effect->id() != only))
             continue;
+        if (const auto* host = effect->host()) {
+            model = withEffect(model, *host, operatingRange);
+            for (auto& p : model.components.back().parameters)
+                if (p.strength)
+                    p.value = p.heard ? 0.5 : 0.5 * model.baseParameter("K").value;
+        }
         model = withEffect(model, *effect, operatingRange);
         double sign = 1.0;
         auto& component = model.components.back();
@@ -103,8 +109,9 @@ TEST_CASE("A model is true to the motion that it makes itself", "[fed]")
         }
         const auto motions = shownMotions(model, record, every, settledMotions(model, record, every));
         const auto own = sumOfFinite(feedbackError(model, record, every, motions, {}, run));
+        const auto without = withoutEffect(model, law->id());
         const auto others =
-            sumOfFinite(feedbackError(linear, record, every, settledMotions(linear, record, every), {}, run)).cost;
+            sumOfFinite(feedbackError(without, record, every, settledMotions(without, record, every), {}, run)).cost;
         INFO(law->id() << " leaves " << own.cost / own.rows << " of the noise, without it " << others / own.rows);
         CHECK(others > (law->slow() ? 5e3 : 1e5) * own.cost);  // the history of a slow one is a mean
     }
@@ -127,10 +134,13 @@ TEST_CASE("The columns of fed laws are the derivatives of what they leave", "[fe
         OutputErrorOptions plain;
         plain.gradient = false;
         p.value = value + step;
+        tellHosts(model);
         const double above = sumOfFinite(feedbackError(model, record, one, motions, {}, plain)).cost;
         p.value = value - step;
+        tellHosts(model);
         const double below = sumOfFinite(feedbackError(model, record, one, motions, {}, plain)).cost;
         p.value = value;
+        tellHosts(model);
         // As much of the gradient as could be explained by the column at all.
         const double most = std::sqrt(whole.N(j, j) * whole.cost);
         CHECK(std::abs((above - below) / (4.0 * step) - whole.g[j]) < 1e-3 * most);

@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 
 using namespace excursion;
 
@@ -175,6 +177,37 @@ TEST_CASE("Channels that are taken together are found so", "[lag]")
     // no channel tells these
     CHECK(!sensorParameter(found.model, Quantity::acceleration).free);
     CHECK(toldOfPath(found.model).size() < found.model.path.parameters.size());
+}
+
+TEST_CASE("A sensor is told by its corner and quality", "[lag]")
+{
+    auto model = makeModel("electrodynamic");
+    const auto told = [&](std::string_view name) {
+        const auto all = toldOfPath(model);
+        const auto found = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
+        return found == all.end() ? std::optional<Parameter>() : *found;
+    };
+    const auto put = [&](Quantity quantity, std::size_t which, double value, double error) {
+        auto& p = model.path.parameters[static_cast<std::size_t>(sensorParameters(quantity)[which].place)];
+        p.value = value;
+        p.standardError = error;
+        p.free = true;
+    };
+    CHECK(toldOfPath(model).size() == 2);  // Sd, tau
+    put(Quantity::displacement, 1, 1e-4, 1e-6);
+    put(Quantity::displacement, 2, 1.5, 0.03);
+    put(Quantity::pressure, 0, 50.0, std::numeric_limits<double>::quiet_NaN());
+    put(Quantity::pressure, 1, 2.0, 0.1);
+    CHECK(told("corner_x")->value == Approx(1591.55));
+    CHECK(told("corner_x")->standardError == Approx(15.9155));
+    CHECK(told("corner_x")->unit == "Hz");
+    CHECK(told("Q_x")->value == Approx(2.0 / 3.0));
+    CHECK(told("Q_x")->standardError == Approx(0.03 / 2.25));
+    CHECK(told("corner_p")->value == Approx(52.0 / (2.0 * std::numbers::pi)));
+    CHECK(told("corner_p")->standardError == Approx(0.1 / (2.0 * std::numbers::pi)));
+    CHECK_FALSE(told("T_x"));
+    put(Quantity::displacement, 1, 0.0, 1e-6);
+    CHECK_FALSE(told("corner_x"));
 }
 
 TEST_CASE("Laws are fed the motion as it is, whatever its sensors are", "[lag]")

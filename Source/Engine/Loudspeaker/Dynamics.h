@@ -18,7 +18,6 @@ public:
     /// @param parameters  one value per parameter of the model, in the order of parametersOf()
     Dynamics(const Model& model, const std::vector<T>& parameters) : electrical_(model.electrical())
     {
-        std::size_t offset = 0;
         int coefficients = 0;
         for (const auto& component : model.components) {
             const auto& e = *component.effect;
@@ -29,12 +28,14 @@ public:
         coefficients_.resize(static_cast<std::size_t>(coefficients));
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const auto& part = parts_[k];
-            part.effect->prepare(*part.operatingRange, parameters.data() + offset,
-                                 coefficients_.data() + part.coefficients);
-            offset += model.components[k].parameters.size();
+            std::vector<T> values;
+            for (const auto place : placesOf(model, k))
+                values.push_back(parameters[static_cast<std::size_t>(place)]);
+            part.effect->prepare(*part.operatingRange, values.data(), coefficients_.data() + part.coefficients);
         }
+        const auto path = static_cast<std::size_t>(firstParameterOf(model, model.components.size()));
         path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.operatingRange)), T(0.0));
-        model.path.effect->prepare(model.path.operatingRange, parameters.data() + offset, path_.data());
+        model.path.effect->prepare(model.path.operatingRange, parameters.data() + path, path_.data());
         radiation_ = &model.path;
         const std::vector<T> rest(static_cast<std::size_t>(order_), T(0.0));
         auto unused = rest;

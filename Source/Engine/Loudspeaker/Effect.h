@@ -77,7 +77,7 @@ struct OperatingRange {
     /// relaxed parameters may differ from zero; false saves the memory that they need
     bool relaxed = true;
     bool joint = true;  ///< joint parameters may differ from zero: another law of the same base parameter is there
-    std::vector<double> host {};  ///< parameters of the effect within which it acts, see Effect::host(); not in files
+    std::vector<double> host {};  ///< parameters of the effect within which it acts, Effect::host(); not in files
 };
 
 struct Parameter {
@@ -225,8 +225,8 @@ public:
     /// Empty: none.
     virtual std::string sizedBy() const;
 
-    /// The linear effect within which it acts, whose parameters it is told by OperatingRange::host. It does nothing in
-    /// a model without that effect.
+    /// The linear effect within which it acts. What it prepares from are its own parameters and then those of that
+    /// effect, of which OperatingRange::host is not empty in a model that has it; it does nothing in another.
     virtual const Effect* host() const { return nullptr; }
 
     virtual int memorySize(const OperatingRange&) const { return 0; }  ///< extra states

@@ -93,15 +93,19 @@ bool stillLead(const Component& law, const LawSlopes& slopes, const std::vector<
     constexpr double hardly = 0.03;
     const auto here = valuesOf(law);
     double strength = 0.0;
-    for (std::size_t k = 0; k < here.size(); ++k)
+    for (std::size_t k = 0; k < law.parameters.size(); ++k)
         if (law.parameters[k].strength)
             strength = std::max(strength, std::abs(slopes.at[k]));
     for (std::size_t k = 0; k < here.size(); ++k) {
-        const auto& p = law.parameters[k];
-        const double was = std::abs(slopes.at[k]), unit = p.strength ? strength
-                                                          : std::isfinite(p.prior)
-                                                              ? std::min(p.prior, std::max(was, 1.0))
-                                                              : was;
+        const double was = std::abs(slopes.at[k]);
+        double unit = was;
+        if (k < law.parameters.size()) {  // else one of its host's
+            const auto& p = law.parameters[k];
+            if (p.strength)
+                unit = strength;
+            else if (std::isfinite(p.prior))
+                unit = std::min(p.prior, std::max(was, 1.0));
+        }
         if (!(std::abs(here[k] - slopes.at[k]) <= hardly * unit))
             return hasConstantSlopes(law);
     }

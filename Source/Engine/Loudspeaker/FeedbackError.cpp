@@ -160,60 +160,50 @@ private:
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(residual_.rows(), static_cast<Eigen::Index>(active.size()));
         Spectrum slope;
-        const Spectrum nothing;
+        bool any = false;  // of it is not zero
         const auto add = [&](const Spectrum& path, double sign, const Spectrum& drive) {
-            if (!path.empty() && !drive.empty())
-                lines(slope) += sign * lines(path, paths_.first) * lines(drive);
-        };
-        const auto fill = [&](Eigen::Index column) {
-            if (heard)
-                slope = later(arrival_.back().heardRoughly(leaving(std::move(slope)), section_.window));
-            residual_.fill(c, slope, J.col(column));
+            if (path.empty() || drive.empty())
+                return;
+            lines(slope) += sign * lines(path, paths_.first) * lines(drive);
+            any = true;
         };
         const auto& byVoltage = paths_.fromVoltage[c];
         const auto& byForce = paths_.fromForce[c];
-        std::vector<std::pair<std::size_t, std::size_t>> owner;  // law (or none) and own index of every parameter
-        const auto none = fed_.laws.size();
-        for (std::size_t k = 0; k < model_.components.size(); ++k) {
-            const auto law = static_cast<std::size_t>(std::find(fed_.component.begin(), fed_.component.end(), k)
-                                                      - fed_.component.begin());
-            for (std::size_t j = 0; j < model_.components[k].parameters.size(); ++j)
-                owner.emplace_back(law, j);
-        }
-        owner.resize(owner.size() + model_.path.parameters.size(), {none, 0});
+        std::vector<std::vector<Eigen::Index>> valuesOfLaws;
+        for (const auto k : fed_.component)
+            valuesOfLaws.push_back(placesOf(model_, k));
         for (std::size_t a = 0; a < active.size(); ++a) {
-            const auto column = static_cast<Eigen::Index>(a);
-            const auto [law, own] = owner[static_cast<std::size_t>(active[a])];
             slope.assign(fed_.voltage.size(), 0.0);
-            if (law == none) {
-                const auto &U = byVoltage.slopes[static_cast<std::size_t>(active[a])],
-                           &F = byForce.slopes[static_cast<std::size_t>(active[a])];
-                if (U.empty() && F.empty())
+            const auto place = static_cast<std::size_t>(active[a]);
+            add(byVoltage.slopes[place], 1.0, fed_.voltage);
+            add(byForce.slopes[place], 1.0, fed_.force);
+            for (std::size_t law = 0; law < fed_.laws.size(); ++law) {
+                const auto own = std::find(valuesOfLaws[law].begin(), valuesOfLaws[law].end(), active[a]);
+                if (own == valuesOfLaws[law].end())
                     continue;
-                add(U, 1.0, fed_.voltage);
-                add(F, 1.0, fed_.force);
-                fill(column);
-                continue;
+                const auto& slopes = *fed_.laws[law].slopes;
+                const auto at = static_cast<std::size_t>(own - valuesOfLaws[law].begin());
+                add(byForce.value, 1.0, slopes.force[at]);
+                if (model_.electrical())
+                    add(byVoltage.value, -1.0, slopes.voltage[at]);
+                if (record_.channels[c] == Quantity::pressure && !slopes.flow[at].empty()) {
+                    lines(slope) += lines(heardOf_) * lines(slopes.flow[at]);
+                    any = true;
+                }
+                if (const auto& lateness = slopes.lateness[at]; heard && !lateness.empty()) {
+                    auto change = lateness;
+                    for (std::size_t n = 0; n < change.size(); ++n)
+                        change[n] *= -byLeaving_[n];
+                    const auto late = later(change);
+                    lines(slope) += lines(late);  // as at rest, which the fill makes later still
+                    any = true;
+                }
             }
-            const auto& slopes = *fed_.laws[law].slopes;
-            const auto &U = slopes.voltage[own], &F = slopes.force[own];
-            const auto& lateness = slopes.lateness[own];
-            const auto& flow = record_.channels[c] == Quantity::pressure ? slopes.flow[own] : nothing;
-            if (U.empty() && F.empty() && flow.empty() && lateness.empty())
+            if (!std::exchange(any, false))
                 continue;
-            add(byForce.value, 1.0, F);
-            if (model_.electrical())
-                add(byVoltage.value, -1.0, U);
-            if (!flow.empty())
-                lines(slope) += lines(heardOf_) * lines(flow);
-            if (heard && !lateness.empty()) {
-                auto change = lateness;
-                for (std::size_t n = 0; n < change.size(); ++n)
-                    change[n] *= -byLeaving_[n];
-                const auto late = later(change);
-                lines(slope) += lines(late);  // as at rest, which fill() makes later still
-            }
-            fill(column);
+            if (heard)
+                slope = later(arrival_.back().heardRoughly(leaving(std::move(slope)), section_.window));
+            residual_.fill(c, slope, J.col(static_cast<Eigen::Index>(a)));
         }
         return J;
     }
@@ -244,11 +234,10 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
         return *played;
     const bool gradient = options.gradient && !active.empty();
     std::vector<std::vector<bool>> wanted;
-    Eigen::Index index = 0;
-    for (const auto& component : model.components) {
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
         wanted.emplace_back();
-        for (std::size_t j = 0; j < component.parameters.size(); ++j, ++index)
-            wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
+        for (const auto place : placesOf(model, k))
+            wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), place));
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
     const auto paths = pathsToChannels(model, record, sections, gradient, options.threads);

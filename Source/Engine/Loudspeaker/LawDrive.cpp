@@ -221,7 +221,7 @@ bool hasConstantSlopes(const Component& law)
         return false;
     const auto here = valuesOf<Jet>(law);
     auto there = here;
-    for (std::size_t k = 0; k < there.size(); ++k) {
+    for (std::size_t k = 0; k < law.parameters.size(); ++k) {
         const auto& p = law.parameters[k];
         there[k] += 0.01 * (1.0 + static_cast<double>(k % 3))
                     * (std::isfinite(p.prior) ? p.prior : law.operatingRange.scale);
@@ -238,7 +238,7 @@ bool hasConstantSlopes(const Component& law)
 LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
                  const std::vector<bool>& wanted, std::size_t lines)
 {
-    const auto count = law.parameters.size();
+    const auto count = valuesOf(law).size();
     const auto size = static_cast<std::size_t>(start.value.size());
     const std::size_t length = motion.i.size();
     const auto gridOf = [&](std::size_t thinned) {
@@ -280,7 +280,8 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slot = static_cast<Eigen::Index>(j);
             parameters[own[j]].v[slot] = 1.0;
-            for (std::size_t m = 0; m < size && !whole; ++m)
+            const bool starts = !whole && own[j] < law.parameters.size();
+            for (std::size_t m = 0; m < size && starts; ++m)
                 memory[m].v[slot] = start.gradient(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(own[j]));
         }
         const auto jets = ask<Jet>(law, parameters, motion, memory, coarse);

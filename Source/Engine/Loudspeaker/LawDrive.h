@@ -12,9 +12,10 @@
 
 namespace excursion {
 
-/// The derivatives of a law's contribution by its own parameters, one entry each. Empty if not asked for or zero.
+/// The derivatives of a law's contribution by all that valuesOf() holds, one entry each. Empty if not asked for or
+/// zero.
 struct LawSlopes {
-    std::vector<double> at;                      ///< the law's parameters where they were taken
+    std::vector<double> at;                      ///< the law's values where they were taken
     std::vector<bool> wanted;                    ///< of these, those that were differentiated by
     std::vector<Spectrum> voltage, force, flow;  ///< the first lines, as many as asked for
     std::vector<std::vector<double>> lateness;
@@ -44,7 +45,7 @@ bool forgetsInAQuarter(const Component&, const ShownMotion&, double sampleRate);
 /// its start: exactly along parabolas between half samples if each state decays at a constant rate, else by the
 /// fourth-order Runge-Kutta method.
 /// @param start      start value of its memory, a quarter of a period before the window
-/// @param wanted     parameters to differentiate by: one flag each, or none
+/// @param wanted     values to differentiate by: one flag for each of valuesOf(), or none
 /// @param lines      of the slopes' spectra, from 0 Hz
 LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate,
                  const std::vector<bool>& wanted, std::size_t lines);

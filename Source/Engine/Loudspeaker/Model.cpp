@@ -252,6 +252,23 @@ Eigen::Index firstParameterOf(const Model& model, std::size_t k)
     return first;
 }
 
+std::vector<Eigen::Index> placesOf(const Model& model, std::size_t k)
+{
+    std::vector<Eigen::Index> places;
+    const auto add = [&](std::size_t n, std::size_t count) {
+        const auto first = firstParameterOf(model, n);
+        for (std::size_t p = 0; p < count; ++p)
+            places.push_back(first + static_cast<Eigen::Index>(p));
+    };
+    const auto& component = k < model.components.size() ? model.components[k] : model.path;
+    add(k, component.parameters.size());
+    if (const auto* host = component.effect->host())
+        for (std::size_t n = 1; n < model.components.size(); ++n)
+            if (model.components[n].effect == host)
+                add(n, component.operatingRange.host.size());
+    return places;
+}
+
 const Eigen::MatrixXd& inverseCurvature(const Model& model)
 {
     return model.inverseCurvature.rows() == model.covariance.rows() ? model.inverseCurvature : model.covariance;

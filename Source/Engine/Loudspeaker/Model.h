@@ -18,13 +18,15 @@ struct Component {
     std::vector<Parameter> parameters;
 };
 
-/// The values of a component's parameters.
+/// The values of a component's parameters, then those of its host's (Effect::host()).
 template <class T = double>
 std::vector<T> valuesOf(const Component& component)
 {
     std::vector<T> values;
     for (const auto& p : component.parameters)
         values.emplace_back(p.value);
+    for (const double value : component.operatingRange.host)
+        values.emplace_back(value);
     return values;
 }
 
@@ -49,8 +51,8 @@ std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& 
 struct Model {
     std::string name;
     std::vector<Component> components;  ///< components.front() is the base
-    Component path;                     ///< radiation(): Sd in m^2 and tau in s; responses of sensors (SensorResponse.h)
-    double microphoneDistance = 1.0;    ///< d, m
+    Component path;                   ///< radiation(): Sd in m^2 and tau in s; responses of sensors (SensorResponse.h)
+    double microphoneDistance = 1.0;  ///< d, m
     /// of parameterVector(); empty when unknown. Of a model from a file standard errors may be larger than its diagonal
     /// says (widenedCovariance())
     Eigen::MatrixXd covariance;
@@ -109,6 +111,8 @@ std::vector<Parameter*> parametersOf(Model&);
 std::vector<const Parameter*> parametersOf(const Model&);
 /// The place of component k's first parameter among them; that of the path's for k = number of components.
 Eigen::Index firstParameterOf(const Model&, std::size_t k);
+/// The places among them of all that component k's valuesOf() holds.
+std::vector<Eigen::Index> placesOf(const Model&, std::size_t k);
 /// Model::inverseCurvature; the covariance where that is not known.
 const Eigen::MatrixXd& inverseCurvature(const Model&);
 

@@ -8,20 +8,18 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
 {
     struct Placed {
         const Component* component;
-        Eigen::Index firstParameter;
+        std::vector<Eigen::Index> places;
         int memory;
     };
-    std::vector<Placed> emitting;
-    Eigen::Index parameter = 0;
-    for (const auto& component : model_.components) {
+    std::vector<Placed> emitting {{&model_.path, placesOf(model_, model_.components.size()), 0}};
+    for (std::size_t k = 0; k < model_.components.size(); ++k) {
+        const auto& component = model_.components[k];
         if (component.effect->emits())
-            emitting.push_back({&component, parameter, order_});
-        parameter += static_cast<Eigen::Index>(component.parameters.size());
+            emitting.push_back({&component, placesOf(model_, k), order_});
         order_ += component.effect->memorySize(component.operatingRange);
     }
-    emitting.insert(emitting.begin(), {&model_.path, parameter, 0});
 
-    for (const auto& [component, firstParameter, memory] : emitting) {
+    for (const auto& [component, places, memory] : emitting) {
         const auto& effect = *component->effect;
         const auto memories = static_cast<std::size_t>(effect.memorySize(component->operatingRange));
         parts_.push_back({component, static_cast<std::size_t>(memory), coefficientsOf(*component, valuesOf(*component)),
@@ -41,9 +39,8 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
         for (int k = 0; k < static_cast<int>(memories); ++k)
             directions.push_back({memory + k, 0, none});
         for (std::size_t c = 0; c < active.size(); ++c)
-            if (const auto own = active[c] - firstParameter;
-                own >= 0 && own < static_cast<Eigen::Index>(component->parameters.size()))
-                directions.push_back({none, static_cast<std::size_t>(own), static_cast<int>(c)});
+            if (const auto own = std::find(places.begin(), places.end(), active[c]); own != places.end())
+                directions.push_back({none, static_cast<std::size_t>(own - places.begin()), static_cast<int>(c)});
         for (std::size_t first = 0; first < directions.size(); first += jetWidth) {
             Chunk chunk;
             chunk.part = parts_.size() - 1;

@@ -11,19 +11,15 @@
 namespace excursion {
 namespace {
 
-/// By component and parameter: its place among the active ones, or -1.
+/// By component and value of valuesOf(): its place among the active parameters, or -1.
 std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, std::span<const Eigen::Index> active)
 {
-    std::vector<std::vector<Eigen::Index>> columns;
-    Eigen::Index first = 0;
-    for (const auto& component : model.components) {
-        auto& own = columns.emplace_back(component.parameters.size(), -1);
-        const auto size = static_cast<Eigen::Index>(own.size());
-        for (std::size_t c = 0; c < active.size(); ++c)
-            if (active[c] >= first && active[c] < first + size)
-                own[static_cast<std::size_t>(active[c] - first)] = static_cast<Eigen::Index>(c);
-        first += size;
-    }
+    std::vector<std::vector<Eigen::Index>> columns(model.components.size());
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        for (const auto place : placesOf(model, k)) {
+            const auto c = std::find(active.begin(), active.end(), place);
+            columns[k].push_back(c == active.end() ? -1 : c - active.begin());
+        }
     return columns;
 }
 
@@ -151,7 +147,7 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
     const int memories = component.effect->memorySize(component.operatingRange);
     struct Direction {
         int output = none;
-        std::size_t own = 0;  // parameter of the law
+        std::size_t own = 0;  // of the values of the law
         Eigen::Index column = none;
     };
     std::vector<Direction> directions;

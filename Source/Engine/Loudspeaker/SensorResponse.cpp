@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -85,12 +88,49 @@ void passSensor(std::vector<std::complex<double>>& spectrum, double step, const 
         spectrum[k] *= sensor(std::complex<double>(0.0, step * static_cast<double>(k)));
 }
 
+namespace {
+
+/// 1/p, in another unit.
+Parameter inverted(Parameter p, std::string name, std::string unit, double times)
+{
+    p.name = std::move(name);
+    p.unit = std::move(unit);
+    p.standardError *= times / (p.value * p.value);
+    p.value = times / p.value;
+    return p;
+}
+
+}  // namespace
+
 std::vector<Parameter> toldOfPath(const Model& model)
 {
-    auto told = model.path.parameters;
-    std::erase_if(told, [](const Parameter& p) {
-        return std::isfinite(p.prior) && !std::isfinite(p.standardError) && (p.free || p.value == 0.0);
-    });
+    constexpr double turn = 2.0 * std::numbers::pi;
+    std::vector<Parameter> told;
+    const auto isTold = [](const Parameter& p) {
+        return !std::isfinite(p.prior) || std::isfinite(p.standardError) || (!p.free && p.value != 0.0);
+    };
+    double rolledOff = 0.0;  // rad/s
+    for (auto p : model.path.parameters) {
+        if (!isTold(p))
+            continue;
+        const bool isCorner = p.name.starts_with("T_"), isLoss = p.name.starts_with("q_");
+        if ((isCorner || isLoss) && p.value == 0.0)
+            continue;
+        if (isCorner)
+            p = inverted(p, "corner_" + p.name.substr(2), "Hz", 1.0 / turn);
+        else if (isLoss)
+            p = inverted(p, "Q_" + p.name.substr(2), "", 1.0);
+        else if (p.name == "w_p") {
+            rolledOff = p.value;
+            continue;
+        } else if (p.name == "dw_p") {
+            p.name = "corner_p";
+            p.unit = "Hz";
+            p.value = (rolledOff + p.value) / turn;
+            p.standardError /= turn;
+        }
+        told.push_back(std::move(p));
+    }
     return told;
 }
 

@@ -52,7 +52,8 @@ Model withoutSensors(Model);
 /// @param step  rad/s
 void passSensor(std::vector<std::complex<double>>& spectrum, double step, const SensorResponse&);
 
-/// The parameters of the path that say something: without those of sensors that no fit could tell.
+/// What the parameters of the path say to a person: without those of sensors that no fit could tell, and with a
+/// sensor's corner in Hz and its Q in place of T and q.
 std::vector<Parameter> toldOfPath(const Model&);
 
 }  // namespace excursion

@@ -15,7 +15,7 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
         return figures;
     const auto first = firstParameterOf(model, component);
     const auto widened = widenedCovariance(model);
-    const auto count = static_cast<Eigen::Index>(values.size());
+    const auto count = static_cast<Eigen::Index>(c.parameters.size());
     Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(figures.size()), count);
     for (Eigen::Index j = 0; j < count; ++j) {
         const auto k = static_cast<std::size_t>(j);

@@ -41,11 +41,7 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
     std::vector<LinearMemory::Block> blocks;
     for (const auto& component : model.components) {
         const auto& effect = *component.effect;
-        std::vector<double> parameters,
-            coefficients(static_cast<std::size_t>(effect.coefficientCount(component.operatingRange)));
-        for (const auto& parameter : component.parameters)
-            parameters.push_back(parameter.value);
-        effect.prepare(component.operatingRange, parameters.data(), coefficients.data());
+        const auto coefficients = coefficientsOf(component, valuesOf(component));
         if (&component != &model.base())
             visited = std::max(visited, component.operatingRange.current);
 

@@ -56,7 +56,7 @@ public:
     {
         std::array<T, sharedair::parameters> box;
         for (std::size_t k = 0; k < box.size(); ++k)
-            box[k] = T(k < e.host.size() ? e.host[k] : k == tuning ? 1.0 : 0.0);
+            box[k] = k < e.host.size() ? p[own + k] : T(k == tuning ? 1.0 : 0.0);
         sharedair::prepare(e, box.data(), c);
         const T w = 2.0 * std::numbers::pi * box[tuning];
         c[outward] = w * p[0];
@@ -88,7 +88,7 @@ public:
 
 private:
     enum : std::size_t { outward = sharedair::coefficients, inward, air, count };
-    static constexpr std::size_t tuning = 1;
+    static constexpr std::size_t own = 3, tuning = 1;
 };
 
 }  // namespace
