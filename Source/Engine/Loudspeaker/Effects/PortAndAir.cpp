@@ -18,7 +18,7 @@ namespace {
 /// which rises everywhere where it ends here, within 2 q^5.
 ///
 /// It is the difference between such a box and the linear one beside which it stands. The memory is that of the linear
-/// box, then how far this one is from it.
+/// box, then how far this one is from it, in units of the visited displacement and velocity.
 class PortAndAir final : public EffectOf<PortAndAir> {
 public:
     PortAndAir()
@@ -69,21 +69,30 @@ public:
                Balance<T>& sum) const
     {
         using namespace sharedair;
-        sharedair::pull(e, c, at.v, T(0.0), memory, rate);
-        const T* beyond = memory + states;
-        const T whole = memory[w] + beyond[w], flow = memory[portVelocity] + beyond[portVelocity], q = c[air] * whole;
+        const double unit[states] {e.displacement, e.velocity, e.displacement};
+        std::array<T, states> plain, beyond;
+        for (std::size_t k = 0; k < states; ++k) {
+            plain[k] = memory[k] * unit[k];
+            beyond[k] = memory[states + k] * unit[k];
+        }
+        sharedair::pull(e, c, at.v, T(0.0), plain.data(), rate);
+        const T whole = plain[w] + beyond[w], flow = plain[portVelocity] + beyond[portVelocity], q = c[air] * whole;
         const T spring = whole * q * (-1.2 + q * (1.36 + q * (-1.496 + q * 1.6157)));
-        const T pull = sharedair::pull(e, c, T(0.0), spring, beyond, rate + states);
+        const T pull = sharedair::pull(e, c, T(0.0), spring, beyond.data(), rate + states);
         rate[states + portVelocity] -= flow > T(0.0) ? c[outward] * flow * flow : -c[inward] * flow * flow;
+        for (std::size_t k = 0; k < states; ++k) {
+            rate[k] *= 1.0 / unit[k];
+            rate[states + k] *= 1.0 / unit[k];
+        }
         sum.force -= c[Ka] * pull;
     }
 
     template <class T>
-    void radiate(const OperatingRange&, const T* c, const Motion<T>&, const T&, const T*, const T* rate,
+    void radiate(const OperatingRange& e, const T* c, const Motion<T>&, const T&, const T*, const T* rate,
                  Emission<T>& sum) const
     {
         using namespace sharedair;
-        sum.acceleration += c[share] * rate[states + portVelocity];
+        sum.acceleration += c[share] * rate[states + portVelocity] * e.velocity;
     }
 
 private:
