@@ -28,9 +28,13 @@ Model bent()
         model = withEffect(model, *effect, operatingRange);
         auto& component = model.components.back();
         double sign = 1.0;
+        // So that what they remember of the start is forgotten in the lead-in.
         if (effect->id() == "friction")
-            // m, so that what it remembers of the start is forgotten in the lead-in
-            component.parameters[1].value = 2e-5;
+            component.parameters[1].value = 2e-5;  // m
+        if (effect->id() == "vented-box") {
+            component.parameters[1].value = 150.0;  // fB, Hz
+            component.parameters[2].value = 0.6;    // 1/QP
+        }
         for (auto& p : component.parameters)
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.operatingRange.scale
