@@ -264,9 +264,12 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
         speaker.friction = drawFriction(strength, speaker.K * visited.displacement, visited.displacement, random);
     else if (effect.id == "coil-heating")  // strength: rise of Re in the end at the loudest level
         speaker.coilHeating = drawHeating(strength, visited.power, random);
-    else if (effect.id == "vented-box")
-        speaker.ventedBox = drawBox(strength, speaker, f0, random);
-    else if (effect.id == "port-and-air") {
+    else if (effect.id == "vented-box") {
+        auto box = drawBox(strength, speaker, f0, random);
+        if (speaker.ventedBox)
+            box.flow = speaker.ventedBox->flow;
+        speaker.ventedBox = box;
+    } else if (effect.id == "port-and-air") {
         if (!speaker.ventedBox)
             speaker.ventedBox = drawBox(0.3, speaker, f0, random);
         speaker.ventedBox->flow = drawFlow(strength, *speaker.ventedBox, visited, random);

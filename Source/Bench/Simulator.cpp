@@ -272,16 +272,18 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
         const auto a = accelerations();
 
         double iMoved = 0.0, aMoved = 0.0;
+        bool finite = true;  // the largest of numbers does not tell
         for (int j = 0; j < 3; ++j) {
+            finite = finite && std::isfinite(i_[j]) && std::isfinite(a[j]);
             iMoved = std::max(iMoved, std::abs(i_[j] - iOld[j]));
             aMoved = std::max(aMoved, std::abs(a[j] - a_[j]));
             iLargest_ = std::max(iLargest_, std::abs(i_[j]));
             aLargest_ = std::max(aLargest_, std::abs(a[j]));
         }
         a_ = a;
-        if (iMoved <= 1e-11 * iLargest_ && aMoved <= 1e-11 * aLargest_)
+        if (finite && iMoved <= 1e-11 * iLargest_ && aMoved <= 1e-11 * aLargest_)
             break;
-        if (iteration == 60 || !std::isfinite(iMoved + aMoved))
+        if (iteration == 60 || !finite)
             throw Error(Error::Kind::numerical, "The virtual loudspeaker left the range in which its equations can be "
                                                 "solved; drive it with less voltage.");
     }

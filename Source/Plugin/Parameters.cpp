@@ -58,7 +58,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     targetQ_ = number("targetQ", "Target Q", {Settings::targetQualities, 100, 0.8, 1.0, ""}, first.target.quality);
     targetVolume_ = number("targetVolume", "Target box", {Settings::targetVolumes, 10000, 0.03, 1000.0, "l"},
                            first.target.volume);
-        coilResistance_ = number("coilResistance", "Coil resistance",
+    coilResistance_ = number("coilResistance", "Coil resistance",
                              {Settings::resistances, 100, 8.0, 1.0, "ohm", "not known"}, first.coilResistance);
     targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
     targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);

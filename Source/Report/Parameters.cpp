@@ -59,7 +59,8 @@ void addParameters(Page& page, const LadderFile& file)
         const auto* start = k == 0 ? &first.base() : first.find(component.effect->id());
         addRows(rows, component.effect->title(), component.parameters, start ? &start->parameters : nullptr);
     }
-    addRows(rows, model.path.effect->title(), toldOfPath(model), &first.path.parameters);
+    const auto atStart = toldOfPath(first);
+    addRows(rows, model.path.effect->title(), toldOfPath(model), &atStart);
     page.table({"", "Parameter", "Final model", "First model", ""}, rows);
     page.note("Values with their standard errors; those of a law are the coefficients of its expansion over the "
               "visited range.");

@@ -161,7 +161,7 @@ TEST_CASE("senseless setups are refused in a sentence", "[bench]")
 
 namespace {
 
-Draw someDraw(std::uint64_t seed)  // of thirteen, every class and every effect is one
+Draw someDraw(std::uint64_t seed)  // of fourteen, every class and every effect is one
 {
     DrawOptions options;
     options.driver = driverClasses()[seed % driverClasses().size()];
@@ -182,10 +182,13 @@ TEST_CASE("a draw is repeatable", "[bench]")
 
 TEST_CASE("draws are plausible and reach the excursion they are made for", "[bench][slow]")
 {
-    for (std::uint64_t seed = 1; seed <= 13; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 14; ++seed) {
         auto drawn = someDraw(seed);
         INFO("seed " << seed << " " << drawn.driver << " " << drawn.hidden.front().id);
-        CHECK(drawn.speaker.effects() == std::vector<std::string> {drawn.hidden.front().id});
+        auto expected = std::vector<std::string> {drawn.hidden.front().id};
+        if (expected.front() == "port-and-air")
+            expected.insert(expected.begin(), "vented-box");
+        CHECK(drawn.speaker.effects() == expected);
         CHECK(drawn.setup.excitation.period >= 8192);
         const double f0 = std::sqrt(drawn.speaker.K / drawn.speaker.m) / 6.283185307179586;
         CHECK(drawn.setup.sampleRate / drawn.setup.excitation.period <= f0 / 10.0);

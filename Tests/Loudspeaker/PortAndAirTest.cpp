@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the air in a box and in its port does beyond the linear box, against the independent bench.
 #include "Bench/Bench.h"
+#include "Engine/Datasheet/KnownScale.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Portrait.h"
 #include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Loudspeaker/Simulate.h"
+#include "SmallSetup.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +21,7 @@ using namespace excursion;
 
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi, rate = 48000.0;
+constexpr double turn = 2.0 * std::numbers::pi, rate = 48000.0, distance = 0.3;  // m
 
 struct Boxed {
     bench::Loudspeaker speaker;
@@ -38,6 +44,8 @@ Boxed boxed(double outward, double inward, double S)
     both.model = withEffect(both.model, effectNamed("port-and-air"), range);
     for (std::size_t k = 0; k < 3; ++k)
         both.model.components.back().parameters[k].value = beyond[k];
+    both.model.microphoneDistance = distance;
+    both.model.path.parameters[1].value = distance / 343.0;
     auto& speaker = both.speaker;
     for (auto [to, name] : {std::pair {&speaker.Re, "Re"},
                             {&speaker.Le, "Le"},
@@ -88,12 +96,12 @@ TEST_CASE("A turbulent port and air without exchange of heat move the model as t
     linear.ventedBox->flow.reset();
     const auto u = tones();
     const std::vector quantities {Quantity::current, Quantity::displacement, Quantity::pressure};
-    const auto truth = bench::play(speaker, u, rate, quantities),
-               plain = bench::play(linear, u, rate, quantities);
+    const auto truth = bench::play(speaker, u, rate, quantities, distance),
+               plain = bench::play(linear, u, rate, quantities, distance);
     SimulationOptions options;
     options.tolerance = 1e-6;
     const auto simulated = simulate(model, u, rate, options);
-    for (const auto quantity : {Quantity::current, Quantity::displacement}) {
+    for (const auto quantity : quantities) {
         INFO(name(quantity));
         const auto& y = truth.find(quantity)->samples;
         CHECK(relativeDb(plain.find(quantity)->samples, y) > -50.0);
@@ -121,10 +129,54 @@ TEST_CASE("Without its box what is within it does nothing, and goes with it", "[
 
 TEST_CASE("A box that a fit moves takes along what is within it", "[effects]")
 {
+    auto [speaker, model] = boxed(0.3, 0.2, 12.0);
+    bench::BenchSetup setup = smallSetup();
+    setup.noiseDb = -90.0;
+    setup.excitation.levels = {2.0, 8.0};
+    const auto record = makeRecord(bench::measure(speaker, setup));
+    const auto expected = model;
+    for (auto [k, p, by] : {std::array {1, 1, 2}, {2, 0, -5}, {2, 2, 10}})
+        model.components[static_cast<std::size_t>(k)].parameters[static_cast<std::size_t>(p)].value *= 1.0 + 0.01 * by;
+    adapt(record, model);
+    FitOptions options;
+    const auto summary = fit(model, record, estimationSections(record), options);
+    CHECK(summary.usable());
+    CHECK(model.components[2].operatingRange.host == valuesOf(model.components[1]));
+    for (const std::size_t k : {1, 2})
+        for (std::size_t p = 0; p < 2; ++p) {
+            const auto& found = model.components[k].parameters[p];
+            INFO(found.name);
+            CHECK(std::abs(found.value - expected.components[k].parameters[p].value)
+                  < 5.0 * found.standardError + 1e-3 * std::abs(found.value));
+        }
+    CHECK(summary.chiSquaredPerValue < 1.3);
+}
+
+TEST_CASE("A known scale takes a box's air along", "[effects]")
+{
+    const auto model = boxed(0.3, 0.2, 12.0).model;
+    const auto half = withMotion(model, 0.5);
+    const auto u = tones();
+    SimulationOptions options;
+    options.tolerance = 1e-6;
+    const auto one = simulate(model, u, rate, options), other = simulate(half, u, rate, options);
+    CHECK(relativeDb(other.find(Quantity::current)->samples, one.find(Quantity::current)->samples) < -90.0);
+    auto twice = other.find(Quantity::displacement)->samples;
+    for (auto& x : twice)
+        x *= 2.0;
+    CHECK(relativeDb(twice, one.find(Quantity::displacement)->samples) < -90.0);
+}
+
+TEST_CASE("The loop of a box's air has a band", "[effects]")
+{
     auto model = boxed(0.3, 0.2, 12.0).model;
-    auto theta = parameterVector(model);
-    const auto fB = firstParameterOf(model, 1) + 1;
-    theta[fB] = 45.0;
-    setParameterVector(model, theta);
-    CHECK(model.components[2].operatingRange.host.at(1) == 45.0);
+    const auto count = parameterVector(model).size();
+    model.covariance = Eigen::MatrixXd::Zero(count, count);
+    const auto air = firstParameterOf(model, 2) + 2;
+    model.covariance(air, air) = 1.0;
+    model.components[2].parameters[2].standardError = 1.0;
+    const auto all = portraits(model);
+    REQUIRE(all.size() == 1);
+    const auto& widths = all.front().lines.front().halfWidth;
+    CHECK(*std::max_element(widths.begin(), widths.end()) > 0.0);
 }

@@ -20,7 +20,7 @@ int lengthPower(const Parameter& p)
 {
     static constexpr std::array powers {std::pair {"kg", -2},  std::pair {"N s/m", -2}, std::pair {"N/m", -2},
                                         std::pair {"N/A", -1}, std::pair {"N", -1},     std::pair {"s/m", -1},
-                                        std::pair {"m", 1}};
+                                        std::pair {"1/m", -1}, std::pair {"m", 1}};
     if (p.unit == "m^2")
         return p.free ? -1 : 0;
     for (const auto& [unit, power] : powers)
@@ -57,6 +57,7 @@ Model withMotion(Model model, double factor)
         model.covariance = (scale.asDiagonal() * model.covariance * scale.asDiagonal()).eval();
         model.inverseCurvature.resize(0, 0);
     }
+    tellHosts(model);
     return model;
 }
 

@@ -115,6 +115,7 @@ Model withLowerLaw(const Model& model, std::size_t k, int by)
         p.value = std::clamp(moved[row], p.lower, p.upper);
         p.standardError = before.standardError * std::sqrt(lower.covariance(row, row) / S(rest[j], rest[j]));
     }
+    tellHosts(lower);
     return lower;
 }
 

@@ -121,7 +121,9 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
 {
     Diagnosis diagnosis;
     diagnosis.verdict = Verdict::missingEffect;
-    int others = -1;  // besides the next one
+    const auto ids = whole.model.effectIds();
+    const auto others = std::count_if(ids.begin(), ids.end(),
+                                      [&](const std::string& id) { return id != next.added && !rung.model.has(id); });
     diagnosis.error = errorByChannel(rung.comparison);
     diagnosis.remainder = remainderOf(rung.comparison);
     for (const auto& candidate : scores) {
@@ -131,7 +133,6 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
             entry.vote = needed->second;
             entry.significant = true;
             entry.confidence = confidenceOf(entry.vote, besideUnknown);
-            ++others;
         }
         if (entry.effect == next.added) {
             entry.confirmedChiSquaredPerValue = next.comparison.chiSquaredPerValue;

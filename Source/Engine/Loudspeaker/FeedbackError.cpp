@@ -116,9 +116,29 @@ private:
             const Complex s(0.0, 2.0 * std::numbers::pi * record_.frequency(section_, k));
             heardOf_.push_back(k > 0 ? gain * std::exp(-s * paths_.lateness) * sensor(s) : 0.0);
         }
+        flow_.assign(fed_.voltage.size(), 0.0);
         for (const auto& law : fed_.laws)
             if (!law.flow.empty())
-                lines(sound) += lines(heardOf_) * lines(law.flow);
+                lines(flow_) += lines(heardOf_) * lines(law.flow);
+        lines(sound) += lines(flow_);
+    }
+
+    /// d ln/d of what is heard of each line that leaves beside the cone, by a parameter of the path.
+    std::vector<Complex> logSlopesOf(Eigen::Index parameter) const
+    {
+        std::vector<Complex> slopes(flow_.size(), 0.0);
+        const auto sensor = sensorOf(model_, Quantity::pressure);
+        const auto sensed = sensorParameters(Quantity::pressure);
+        const auto own = std::find_if(sensed.begin(), sensed.end(),
+                                      [&](const SensorParameter& p) { return p.place == parameter; });
+        for (std::size_t k = 1; k < slopes.size(); ++k) {
+            const Complex s(0.0, 2.0 * std::numbers::pi * record_.frequency(section_, k));
+            slopes[k] = parameter == 0        ? 1.0 / model_.path.parameters.front().value
+                        : parameter == 1      ? -s
+                        : own != sensed.end() ? sensor.logSlope(own->value, s)
+                                              : 0.0;
+        }
+        return slopes;
     }
 
     /// The spectrum of what leaves the cone, of what arrives as late as at rest.
@@ -177,6 +197,12 @@ private:
             const auto place = static_cast<std::size_t>(active[a]);
             add(byVoltage.slopes[place], 1.0, fed_.voltage);
             add(byForce.slopes[place], 1.0, fed_.force);
+            if (const auto ofPath = active[a] - firstParameterOf(model_, model_.components.size());
+                record_.channels[c] == Quantity::pressure && ofPath >= 0 && !flow_.empty()) {
+                const auto slopes = logSlopesOf(ofPath);
+                lines(slope) += lines(flow_) * lines(slopes);
+                any = true;
+            }
             for (std::size_t law = 0; law < fed_.laws.size(); ++law) {
                 const auto own = std::find(valuesOfLaws[law].begin(), valuesOfLaws[law].end(), active[a]);
                 if (own == valuesOfLaws[law].end())
@@ -218,6 +244,7 @@ private:
     const DepartureResponse* departures_;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
+    Spectrum flow_;      ///< Pa, of laws that radiate beside the cone
     Spectrum heardOf_;   ///< Pa per m/s^2 of a line that leaves beside the cone, where any does
     Spectrum onTheWay_;  ///< what the way to the microphone makes of a line, once it is asked for
 };

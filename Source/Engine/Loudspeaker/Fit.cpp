@@ -99,6 +99,13 @@ SearchCoordinates coordinatesOf(Model& model, const std::vector<Eigen::Index>& a
     return SearchCoordinates(std::move(own));
 }
 
+/// Puts the model where a search looks.
+void place(Model& model, SearchCoordinates& coordinates, const Eigen::VectorXd& at)
+{
+    coordinates.place(at);
+    tellHosts(model);
+}
+
 /// What damps the steps of shapes besides: where the record tells them no better than their prior, and many of them
 /// alike, slopes hold for less than a step to the least cost. What it tells well moves as freely as without.
 Eigen::VectorXd heldOf(const Model& model, const std::vector<Eigen::Index>& active, double variance)
@@ -129,7 +136,7 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     std::vector<std::vector<double>> before;
     for (const auto& component : model.components)
         before.push_back(valuesOf(component));
-    coordinates.place(from + step);
+    place(model, coordinates, from + step);
     for (std::size_t k = 0; k < model.components.size(); ++k) {
         auto& component = model.components[k];
         const auto first = firstParameterOf(model, k), last = firstParameterOf(model, k + 1);
@@ -142,6 +149,7 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
                 component.parameters[j].value = values[j];
         }
     }
+    tellHosts(model);
     return coordinates.now();
 }
 
@@ -156,6 +164,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
             parameter->value = std::clamp(parameter->value, parameter->lower, parameter->upper);
             leaveZero(*parameter);
         }
+    tellHosts(model);
     auto searched = telling(model, errorOf);
     const auto& active = searched.active;
     auto& atStart = searched.fits;
@@ -175,7 +184,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        coordinates.place(at);
+        place(model, coordinates, at);
         // asked for there first
         auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
         auto total = sumOf(fits);
@@ -221,7 +230,7 @@ FitSummary search(Model& model, const Record& record, const std::vector<std::siz
     static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, coordinates.lower(), coordinates.upper(),
                                                     options.search, progress,
                                                     corrected ? ChordGradient(chord) : ChordGradient(), retraction);
-    coordinates.place(theta);
+    place(model, coordinates, theta);
     if (!summary.usable())
         return summary;
     if (summary.termination == Termination::noSlopes)

@@ -183,21 +183,31 @@ Portrait frameOf(const Effect& effect)
     return {};
 }
 
-/// The model with this component as its only effect, as its portrait depends on no other.
+/// The model with this component as its last and only effect beside its host, as its portrait depends on no other.
 Model alone(const Model& model, std::size_t component)
 {
     Model only = model;
-    only.components = {model.components.front(), model.components[component]};
+    const auto* host = model.components[component].effect->host();
+    const auto stays = [&](std::size_t k) {
+        return k == 0 || k == component || (host && k < model.components.size() && model.components[k].effect == host);
+    };
+    only.components.clear();
+    for (std::size_t k = 0; k < model.components.size(); ++k)
+        if (stays(k) && k != component)
+            only.components.push_back(model.components[k]);
+    only.components.push_back(model.components[component]);
     if (model.covariance.size() == 0)
         return only;
     std::vector<Eigen::Index> kept;
-    Eigen::Index at = 0;
-    for (std::size_t k = 0; k <= model.components.size(); ++k) {
-        const auto& parameters = k < model.components.size() ? model.components[k].parameters : model.path.parameters;
-        for (std::size_t p = 0; p < parameters.size(); ++p, ++at)
-            if (k == 0 || k == component || k == model.components.size())
-                kept.push_back(at);
-    }
+    const auto keep = [&](std::size_t k, std::size_t count) {
+        for (std::size_t p = 0; p < count; ++p)
+            kept.push_back(firstParameterOf(model, k) + static_cast<Eigen::Index>(p));
+    };
+    for (std::size_t k = 0; k < model.components.size(); ++k)
+        if (stays(k) && k != component)
+            keep(k, model.components[k].parameters.size());
+    keep(component, model.components[component].parameters.size());
+    keep(model.components.size(), model.path.parameters.size());
     only.covariance = model.covariance(kept, kept);
     return only;
 }
@@ -214,7 +224,7 @@ std::vector<Portrait> portraits(const Model& model)
         portrait.lines = linesOf(model, k);
         const auto errors = standardErrorsOf(alone(model, k), [](const Model& only) {
             std::vector<double> values;
-            for (const auto& line : linesOf(only, 1))
+            for (const auto& line : linesOf(only, only.components.size() - 1))
                 values.insert(values.end(), line.value.begin(), line.value.end());
             return Eigen::VectorXd(
                 Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -109,7 +110,7 @@ std::vector<Parameter> toldOfPath(const Model& model)
     const auto isTold = [](const Parameter& p) {
         return !std::isfinite(p.prior) || std::isfinite(p.standardError) || (!p.free && p.value != 0.0);
     };
-    double rolledOff = 0.0;  // rad/s
+    std::optional<Parameter> rolledOff;  // until it is told with what it is off
     for (auto p : model.path.parameters) {
         if (!isTold(p))
             continue;
@@ -121,15 +122,21 @@ std::vector<Parameter> toldOfPath(const Model& model)
         else if (isLoss)
             p = inverted(p, "Q_" + p.name.substr(2), "", 1.0);
         else if (p.name == "w_p") {
-            rolledOff = p.value;
+            rolledOff = p;
             continue;
         } else if (p.name == "dw_p") {
-            p.name = "corner_p";
-            p.unit = "Hz";
-            p.value = (rolledOff + p.value) / turn;
-            p.standardError /= turn;
+            p.value += rolledOff ? rolledOff->value : 0.0;
+            rolledOff = std::move(p);
+            continue;
         }
         told.push_back(std::move(p));
+    }
+    if (rolledOff) {
+        rolledOff->name = "corner_p";
+        rolledOff->unit = "Hz";
+        rolledOff->value /= turn;
+        rolledOff->standardError /= turn;
+        told.push_back(std::move(*rolledOff));
     }
     return told;
 }

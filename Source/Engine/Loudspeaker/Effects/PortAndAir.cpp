@@ -59,9 +59,10 @@ public:
             box[k] = k < e.host.size() ? p[own + k] : T(k == tuning ? 1.0 : 0.0);
         sharedair::prepare(e, box.data(), c);
         const T w = 2.0 * std::numbers::pi * box[tuning];
-        c[outward] = w * p[0];
-        c[inward] = w * p[1];
-        c[air] = p[2];
+        const double there = e.host.empty() ? 0.0 : 1.0;
+        c[outward] = there * w * p[0];
+        c[inward] = there * w * p[1];
+        c[air] = there * p[2];
     }
 
     template <class T>
