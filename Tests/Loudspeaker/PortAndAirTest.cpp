@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the air in a box and in its port does beyond the linear box, against the independent bench.
 #include "Bench/Bench.h"
-#include "Engine/Datasheet/KnownScale.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Fit.h"
@@ -65,19 +64,22 @@ Boxed boxed(double outward, double inward, double S)
 std::vector<double> tones()
 {
     std::vector<double> u;
-    for (int n = 0; n < static_cast<int>(0.5 * rate); ++n) {
+    const int length = static_cast<int>(0.5 * rate);
+    for (int n = 0; n < length; ++n) {
         double sum = 0.0;
         for (const double f : {22.0, 31.0, 38.0, 57.0, 110.0})
             sum += 4.0 * std::sin(turn * f * n / rate + f);
-        u.push_back(sum * std::min(1.0, n / (0.02 * rate)));
+        u.push_back(sum * std::min({1.0, n / (0.02 * rate), (length - n) / (0.02 * rate)}));
     }
     return u;
 }
 
+/// Away from the ends, where sound needs its filters.
 double relativeDb(const std::vector<double>& a, const std::vector<double>& b)
 {
+    constexpr std::size_t ends = 2400;
     double error = 0.0, power = 0.0;
-    for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
+    for (std::size_t n = ends; n + ends < std::min(a.size(), b.size()); ++n) {
         error += (a[n] - b[n]) * (a[n] - b[n]);
         power += b[n] * b[n];
     }
@@ -132,14 +134,15 @@ TEST_CASE("A box that a fit moves takes along what is within it", "[effects]")
     auto [speaker, model] = boxed(0.3, 0.2, 12.0);
     bench::BenchSetup setup = smallSetup();
     setup.noiseDb = -90.0;
-    setup.excitation.levels = {2.0, 8.0};
-    const auto record = makeRecord(bench::measure(speaker, setup));
+    setup.excitation.period = 16384;
+    setup.excitation.levels = {1.0, 4.0};
+    auto record = makeRecord(bench::measure(speaker, setup));
     const auto expected = model;
     for (auto [k, p, by] : {std::array {1, 1, 2}, {2, 0, -5}, {2, 2, 10}})
         model.components[static_cast<std::size_t>(k)].parameters[static_cast<std::size_t>(p)].value *= 1.0 + 0.01 * by;
     adapt(record, model);
-    FitOptions options;
-    const auto summary = fit(model, record, estimationSections(record), options);
+    auto summary = fit(model, record, estimationSections(record), {});  // far from its end a search ends early
+    summary = fit(model, record, estimationSections(record), {});
     CHECK(summary.usable());
     CHECK(model.components[2].operatingRange.host == valuesOf(model.components[1]));
     for (const std::size_t k : {1, 2})
@@ -150,21 +153,6 @@ TEST_CASE("A box that a fit moves takes along what is within it", "[effects]")
                   < 5.0 * found.standardError + 1e-3 * std::abs(found.value));
         }
     CHECK(summary.chiSquaredPerValue < 1.3);
-}
-
-TEST_CASE("A known scale takes a box's air along", "[effects]")
-{
-    const auto model = boxed(0.3, 0.2, 12.0).model;
-    const auto half = withMotion(model, 0.5);
-    const auto u = tones();
-    SimulationOptions options;
-    options.tolerance = 1e-6;
-    const auto one = simulate(model, u, rate, options), other = simulate(half, u, rate, options);
-    CHECK(relativeDb(other.find(Quantity::current)->samples, one.find(Quantity::current)->samples) < -90.0);
-    auto twice = other.find(Quantity::displacement)->samples;
-    for (auto& x : twice)
-        x *= 2.0;
-    CHECK(relativeDb(twice, one.find(Quantity::displacement)->samples) < -90.0);
 }
 
 TEST_CASE("The loop of a box's air has a band", "[effects]")

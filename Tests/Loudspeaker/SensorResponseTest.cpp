@@ -191,7 +191,7 @@ TEST_CASE("A sensor is told by its corner and quality", "[lag]")
         auto& p = model.path.parameters[static_cast<std::size_t>(sensorParameters(quantity)[which].place)];
         p.value = value;
         p.standardError = error;
-        p.free = true;
+        p.free = std::isfinite(error);
     };
     CHECK(toldOfPath(model).size() == 2);  // Sd, tau
     put(Quantity::displacement, 1, 1e-4, 1e-6);
