@@ -124,9 +124,9 @@ TEST_CASE("Without its box what is within it does nothing, and goes with it", "[
     CHECK(relativeDb(simulate(strong, u, rate, {}).find(Quantity::displacement)->samples,
                      simulate(alone, u, rate, {}).find(Quantity::displacement)->samples)
           < -200.0);
-    CHECK_THAT(whyHomeless(effectNamed("port-and-air"), makeModel("electrodynamic")), Catch::Contains("vented-box"));
-    CHECK(whyHomeless(effectNamed("port-and-air"), model).empty());
-    CHECK(whyHomeless(effectNamed("stiffness"), makeModel("electrodynamic")).empty());
+    CHECK_THAT(whyHostMissing(effectNamed("port-and-air"), makeModel("electrodynamic")), Catch::Contains("vented-box"));
+    CHECK(whyHostMissing(effectNamed("port-and-air"), model).empty());
+    CHECK(whyHostMissing(effectNamed("stiffness"), makeModel("electrodynamic")).empty());
 }
 
 TEST_CASE("A box that a fit moves takes along what is within it", "[effects]")

@@ -43,7 +43,7 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
                     effects.empty() ? options : quick, progress.part(0.0, step));
     double done = step;
     for (const auto& id : effects) {
-        if (const auto why = whyHomeless(effectNamed(id), model); !why.empty())
+        if (const auto why = whyHostMissing(effectNamed(id), model); !why.empty())
             throw Error(Error::Kind::usage, why);
         tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
         done += step;

@@ -267,7 +267,7 @@ void Improvement::add(const std::string& id, const Progress& progress)
         throw Error(Error::Kind::data, "The model already has the effect \"" + id + "\".");
     if (const auto why = whyUnseen(effect, std::visit([](const auto& d) { return seenIn(d); }, data_)); !why.empty())
         throw Error(Error::Kind::data, why);
-    if (const auto why = whyHomeless(effect, last.model); !why.empty())
+    if (const auto why = whyHostMissing(effect, last.model); !why.empty())
         throw Error(Error::Kind::data, why);
     auto data = data_;
     Rung rung;

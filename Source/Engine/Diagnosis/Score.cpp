@@ -87,7 +87,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     // with a linear effect, whose shape the responses tell at once: in time every start would carry a memory of its own
     std::vector<Model> searched;
     for (const auto* effect : catalogue()) {
-        if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty() || !whyHomeless(*effect, model).empty())
+        if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty() || !whyHostMissing(*effect, model).empty())
             continue;
         const auto* known = options.shapes && options.shapes->has(effect->id()) ? &componentOf(*options.shapes, *effect)
                                                                                 : nullptr;

@@ -45,7 +45,7 @@ std::string whyUnseen(const Effect& effect, const Seen& seen)
     return "";
 }
 
-std::string whyHomeless(const Effect& effect, const Model& model)
+std::string whyHostMissing(const Effect& effect, const Model& model)
 {
     const auto* host = effect.host();
     return !host || model.has(host->id()) ? ""

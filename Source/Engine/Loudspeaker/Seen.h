@@ -25,7 +25,7 @@ Seen seenIn(const Take&);
 std::string whyUnseen(const Effect&, const Seen&);
 
 /// Why this effect cannot come into the model, as a sentence that says what to do about it; empty if it can.
-std::string whyHomeless(const Effect&, const Model&);
+std::string whyHostMissing(const Effect&, const Model&);
 
 /// Throws Error (data) when one of model and take has a coil and the other has none.
 void requireSameKind(const Model&, const Seen&);
