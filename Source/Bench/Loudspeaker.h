@@ -67,21 +67,22 @@ struct CoilHeating {
     double magnetResistance = 3.0;  ///< K/W, magnet to room
 };
 
-/// An air spring shared by cone and port. All displacements are volume displacements over the cone's area: y of the
-/// port, l of the leak.
-///     q = -stiffness (x + y + l) - absorption (x' + y' + l')   is the force on the cone,
-///     mass y'' = q - resistance y' - spring y                  the port, or a passive radiator with a spring,
-///     l' = q / leak                                            no leak if infinite,
-/// and the port's y'' is heard with the cone's x''. With `flow`, x + y + l = w compresses the air without exchange of
-/// heat, and a jet loses what the port's speed gave it:
-///     stiffness w is stiffness (1 - (1 + w/length)^-1.4) length/1.4,
-///     resistance y' is resistance y' + loss |y'|^power sign(y'), with a loss either way.
+/// What a box does beyond a linear one: x + y + l = w (VentedBox) compresses the air without exchange of heat, and a
+/// jet loses what the port's speed gave it,
+///     stiffness w    is  stiffness (1 - (1 + w/length)^-1.4) length/1.4,
+///     resistance y'  is  resistance y' + loss |y'|^power sign(y'), with a loss either way.
 struct BoxFlow {
     double outward = 0.0, inward = 0.0;  ///< N (s/m)^power
     double power = 2.0;
     double length = 1.0;  ///< m, the box's volume over the cone's area
 };
 
+/// An air spring shared by cone and port. All displacements are volume displacements over the cone's area: y of the
+/// port, l of the leak.
+///     q = -stiffness (x + y + l) - absorption (x' + y' + l')   is the force on the cone,
+///     mass y'' = q - resistance y' - spring y                  the port, or a passive radiator with a spring,
+///     l' = q / leak                                            no leak if infinite,
+/// and the port's y'' is heard with the cone's x''.
 struct VentedBox {
     double stiffness = 0.0;                                 ///< N/m
     double mass = 0.0;                                      ///< kg

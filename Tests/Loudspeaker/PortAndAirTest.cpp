@@ -8,6 +8,7 @@
 #include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "SmallSetup.h"
+#include "Loudspeaker/BenchTwin.h"
 
 #include <catch2/catch.hpp>
 
@@ -46,13 +47,7 @@ Boxed boxed(double outward, double inward, double S)
     both.model.microphoneDistance = distance;
     both.model.path.parameters[1].value = distance / 343.0;
     auto& speaker = both.speaker;
-    for (auto [to, name] : {std::pair {&speaker.Re, "Re"},
-                            {&speaker.Le, "Le"},
-                            {&speaker.Bl, "Bl"},
-                            {&speaker.m, "m"},
-                            {&speaker.Rms, "Rms"},
-                            {&speaker.K, "K"}})
-        *to = both.model.baseParameter(name).value;
+    takeBase(speaker, both.model);
     const double mass = Kb / (wB * wB);
     speaker.ventedBox = bench::VentedBox {Kb, mass, mass * wB * dP, Kb / (wB * dL), Kb * dA / wB, 0.0};
     speaker.ventedBox->flow = bench::BoxFlow {mass * wB * outward, mass * wB * inward, 2.0, 1.0 / std::max(S, 1e-9)};

@@ -5,6 +5,7 @@
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/MatchSound.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Loudspeaker/BenchTwin.h"
 
 #include <catch2/catch.hpp>
 
@@ -96,13 +97,7 @@ TEST_CASE("A box with losses and a radiator is that of the independent bench", "
     const double Kb = 2400.0, fB = 38.0, dP = 0.08, dL = 0.12, dA = 0.03, r = 0.3, wB = turn * fB;
     const auto model = boxed({Kb, fB, dP, dL, dA, r});
     bench::Loudspeaker speaker;
-    for (auto [to, name] : {std::pair {&speaker.Re, "Re"},
-                            {&speaker.Le, "Le"},
-                            {&speaker.Bl, "Bl"},
-                            {&speaker.m, "m"},
-                            {&speaker.Rms, "Rms"},
-                            {&speaker.K, "K"}})
-        *to = model.baseParameter(name).value;
+    takeBase(speaker, model);
     const double Ka = Kb * (1.0 + r), mass = Ka * (1.0 + r) / (wB * wB);
     speaker.K -= Kb * r;  // the engine's K is the stiffness at rest with the box in it
     speaker.ventedBox = bench::VentedBox {Ka, mass, mass * wB * dP, Ka / (wB * dL), Ka * dA / wB, Ka * r};

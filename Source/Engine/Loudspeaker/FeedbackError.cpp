@@ -105,17 +105,26 @@ private:
         return result;
     }
 
+    /// What the way to the microphone makes of each line.
+    void goTheWay()
+    {
+        for (std::size_t k = onTheWay_.size(); k < fed_.voltage.size(); ++k)
+            onTheWay_.push_back(
+                std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * paths_.lateness));
+    }
+
     /// Adds the sound that laws make beside the cone.
     void radiate(Spectrum& sound)
     {
         if (std::none_of(fed_.laws.begin(), fed_.laws.end(), [](const LawDrive& law) { return law.radiates(); }))
             return;
-        const auto sensor = sensorOf(model_, Quantity::pressure);
+        goTheWay();
+        heardOf_ = onTheWay_;
+        passSensor(heardOf_, 2.0 * std::numbers::pi * record_.frequency(section_, 1),
+                   sensorOf(model_, Quantity::pressure));
         const double gain = radiationPerArea() / model_.microphoneDistance * model_.path.parameters.front().value;
-        for (std::size_t k = 0; k < fed_.voltage.size(); ++k) {
-            const Complex s(0.0, 2.0 * std::numbers::pi * record_.frequency(section_, k));
-            heardOf_.push_back(k > 0 ? gain * std::exp(-s * paths_.lateness) * sensor(s) : 0.0);
-        }
+        for (auto& line : heardOf_)
+            line *= gain;
         flow_.assign(fed_.voltage.size(), 0.0);
         for (const auto& law : fed_.laws)
             if (!law.flow.empty())
@@ -164,10 +173,7 @@ private:
         for (const auto& law : fed_.laws) {
             if (!law.isLate())
                 continue;
-            if (onTheWay_.empty())
-                for (std::size_t k = 0; k < sound.size(); ++k)
-                    onTheWay_.push_back(
-                        std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * paths_.lateness));
+            goTheWay();
             const auto flow = inverseFft(leaving(std::move(sound)), section_.window);
             arrival_.emplace_back(law.lateness, record_.sampleRate);
             byLeaving_ = slopeByLeaving(flow, law.lateness, record_.sampleRate);

@@ -136,7 +136,7 @@ Eigen::VectorXd retracted(Model& model, const std::vector<Eigen::Index>& active,
     std::vector<std::vector<double>> before;
     for (const auto& component : model.components)
         before.push_back(valuesOf(component));
-    place(model, coordinates, from + step);
+    coordinates.place(from + step);
     for (std::size_t k = 0; k < model.components.size(); ++k) {
         auto& component = model.components[k];
         const auto first = firstParameterOf(model, k), last = firstParameterOf(model, k + 1);

@@ -186,28 +186,25 @@ Portrait frameOf(const Effect& effect)
 /// The model with this component as its last and only effect beside its host, as its portrait depends on no other.
 Model alone(const Model& model, std::size_t component)
 {
+    const auto& all = model.components;
+    std::vector<std::size_t> stays {0};
+    for (std::size_t k = 1; k < all.size(); ++k)
+        if (all[k].effect == all[component].effect->host())
+            stays.push_back(k);
+    stays.push_back(component);
     Model only = model;
-    const auto* host = model.components[component].effect->host();
-    const auto stays = [&](std::size_t k) {
-        return k == 0 || k == component || (host && k < model.components.size() && model.components[k].effect == host);
-    };
     only.components.clear();
-    for (std::size_t k = 0; k < model.components.size(); ++k)
-        if (stays(k) && k != component)
-            only.components.push_back(model.components[k]);
-    only.components.push_back(model.components[component]);
+    for (const auto k : stays)
+        only.components.push_back(all[k]);
     if (model.covariance.size() == 0)
         return only;
+    stays.push_back(all.size());  // the path
     std::vector<Eigen::Index> kept;
-    const auto keep = [&](std::size_t k, std::size_t count) {
+    for (const auto k : stays) {
+        const auto count = k < all.size() ? all[k].parameters.size() : model.path.parameters.size();
         for (std::size_t p = 0; p < count; ++p)
             kept.push_back(firstParameterOf(model, k) + static_cast<Eigen::Index>(p));
-    };
-    for (std::size_t k = 0; k < model.components.size(); ++k)
-        if (stays(k) && k != component)
-            keep(k, model.components[k].parameters.size());
-    keep(component, model.components[component].parameters.size());
-    keep(model.components.size(), model.path.parameters.size());
+    }
     only.covariance = model.covariance(kept, kept);
     return only;
 }
