@@ -31,8 +31,8 @@ public:
     explicit Editor(Processor&, juce::AudioDeviceManager* devices = nullptr);
     ~Editor() override;
 
-    /// As if the file had been dropped: a model is loaded, anything else is opened as a take. What cannot be used is
-    /// told in the status line, and changes nothing.
+    /// As if the file had been dropped: a model is loaded, anything else is opened as a take, once a person agrees
+    /// where that loses something. What cannot be used is told in the status line, and changes nothing.
     void load(const juce::File&);
     const juce::String status() const { return status_.getText(); }
 
@@ -63,6 +63,7 @@ public:
     void useBox(const nlohmann::ordered_json&, const juce::String& from) override;
     void saveModel(const Model&) override;
     void saveModel(const Model&, const juce::File&);  ///< tells what came of it
+    void onceAgreed(bool withRecording, const juce::String& wish, std::function<void()>) override;
     void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;

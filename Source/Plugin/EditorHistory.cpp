@@ -4,6 +4,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Plots/Words.h"
 
 #include <nlohmann/json.hpp>
 
@@ -181,6 +182,28 @@ void Editor::saveModel(const Model& model, const juce::File& file)
     }
 }
 
+void Editor::onceAgreed(bool withRecording, const juce::String& wish, std::function<void()> then)
+{
+    auto lost = words(capitalized(owner_.session().unsaved(withRecording)));
+    if (auto* measuring = measure_.measuring(); withRecording && measuring != nullptr && measuring->running())
+        lost += lost.isEmpty() ? "The measurement under way" : " and the measurement under way";
+    if (lost.isEmpty()) {
+        then();
+        return;
+    }
+    const auto question = juce::MessageBoxOptions()
+                              .withIconType(juce::MessageBoxIconType::QuestionIcon)
+                              .withTitle("Not saved")
+                              .withMessage(lost + " would be lost: there is no file of it yet.")
+                              .withButton(wish.substring(0, 1).toUpperCase() + wish.substring(1))
+                              .withButton("Cancel")
+                              .withAssociatedComponent(this);
+    juce::AlertWindow::showAsync(question, [window = SafePointer<Editor>(this), then = std::move(then)](int button) {
+        if (window != nullptr && button == 1)
+            then();
+    });
+}
+
 /// What came of a model without physics that was loaded.
 void Editor::noteRehearsal()
 {
@@ -202,8 +225,10 @@ void Editor::noteRehearsal()
 void Editor::load(const juce::File& file)
 {
     if (!holdsModel(file)) {
-        owner_.session().open(file.getFullPathName().toStdString());
-        go(PageName::measure);
+        onceAgreed(false, "open another take", [this, file] {
+            owner_.session().open(file.getFullPathName().toStdString());
+            go(PageName::measure);
+        });
         return;
     }
     useFile(file);

@@ -192,12 +192,14 @@ void IdentifyPage::save()
         "Save the model", juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("model.json"),
         "*.json");
     chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
-                          [this, document](const juce::FileChooser& chosen) {
+                          [this, document, pnlss = models.pnlss](const juce::FileChooser& chosen) {
                               const auto file = chosen.getResult();
                               if (file == juce::File())
                                   return;
                               try {
                                   writeJson(document, file.getFullPathName().toStdString());
+                                  if (pnlss)
+                                      session().noteSaved(pnlss);
                                   window_.tell("Wrote " + file.getFullPathName() + ".", false);
                               } catch (const Error& error) {
                                   window_.tell(words(error.what()), true);

@@ -106,16 +106,14 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
     seed_.setRange(1.0, 9999.0, 1.0);
     seed_.setValue(7.0, juce::dontSendNotification);
     draw_.onClick = [this] {
-        session().open(VirtualOrder {driver_.getText().toStdString(), static_cast<std::uint64_t>(seed_.getValue())});
+        const VirtualOrder order {driver_.getText().toStdString(), static_cast<std::uint64_t>(seed_.getValue())};
+        window_.onceAgreed(false, "draw a loudspeaker", [this, order] { session().open(order); });
     };
     open_.onClick = [this] { choose(); };
     folder_.onClick = [this] {
         chooser_ = std::make_unique<juce::FileChooser>("Open the folder of a take");
         chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectDirectories,
-                              [this](const juce::FileChooser& chosen) {
-                                  if (chosen.getResult() != juce::File())
-                                      session().open(chosen.getResult().getFullPathName().toStdString());
-                              });
+                              [this](const juce::FileChooser& chosen) { open(chosen.getResult()); });
     };
     // What is saved is what was there at the click: while the dialog is open, another take may come.
     const auto ask = [this](const juce::String& what, auto save) {
@@ -154,10 +152,14 @@ void MeasurePage::choose()
 {
     chooser_ = std::make_unique<juce::FileChooser>("Open a take", juce::File(), "*.json;*.csv;*.txt;*.zma;*.frd;*.mat");
     chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles,
-                          [this](const juce::FileChooser& chosen) {
-                              if (chosen.getResult() != juce::File())
-                                  session().open(chosen.getResult().getFullPathName().toStdString());
-                          });
+                          [this](const juce::FileChooser& chosen) { open(chosen.getResult()); });
+}
+
+void MeasurePage::open(const juce::File& file)
+{
+    if (file != juce::File())
+        window_.onceAgreed(false, "open another take",
+                           [this, path = file.getFullPathName().toStdString()] { session().open(path); });
 }
 
 void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)

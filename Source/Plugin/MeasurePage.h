@@ -29,6 +29,7 @@ public:
     void saveRecording(const std::shared_ptr<const RecordingOptions>&, const juce::File&);
 
 private:
+    void open(const juce::File&);
     bool isFree(const juce::File&);
 
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;

@@ -211,9 +211,9 @@ void MeasuringPanel::start()
         auto* device = devices_.getCurrentAudioDevice();
         if (device == nullptr || !device->isOpen())
             throw Error(Error::Kind::usage, "No audio device is open: choose one first.");
-        auto plan = planExcitation(planOptions());
+        const auto plan = planExcitation(planOptions());
         const double fullScale = entered(fullScale_.getText(), "voltage");
-        auto wanted = roles();
+        const auto wanted = roles();
         bool voltage = false;
         std::vector<int> inputs;
         for (const auto& role : wanted) {
@@ -229,11 +229,22 @@ void MeasuringPanel::start()
         if (window_.processor().session().keeps())
             throw Error(Error::Kind::usage,
                         "What was measured last waits for the work that is under way: cancel that, or wait.");
+        window_.onceAgreed(true, "measure", [=, this] { play(plan, wanted, inputs, output, fullScale); });
+    } catch (const std::exception& error) {
+        window_.tell(words(error.what()), true);
+    }
+}
+
+void MeasuringPanel::play(const Measurement& plan, const std::vector<InputRole>& roles, const std::vector<int>& inputs,
+                          int output, double fullScale)
+{
+    try {
         window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
-        measuring_ = std::make_unique<Measuring>(std::make_unique<OpenDevice>(devices_, inputs, output),
-                                                 std::move(plan), wanted, fullScale);
+        measuring_ = std::make_unique<Measuring>(std::make_unique<OpenDevice>(devices_, inputs, output), plan, roles,
+                                                 fullScale);
         go_.setButtonText("Stop");
         device_.setEnabled(false);  // its test tone would be heard, and its dialog hide Stop
+        enableAppOptions(false);
         window_.tell("Measuring. Do not touch the loudspeaker.", false);
     } catch (const std::exception& error) {
         end();
@@ -247,6 +258,7 @@ void MeasuringPanel::end()
     window_.processor().suspendProcessing(false);
     go_.setButtonText("Start measuring");
     device_.setEnabled(true);
+    enableAppOptions(true);
     preview();
 }
 

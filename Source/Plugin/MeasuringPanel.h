@@ -24,7 +24,7 @@ public:
     ExcitationPlanOptions planOptions() const;
     std::vector<InputRole> roles() const;
 
-    void start();   ///< as if the button had been pressed
+    void start();   ///< as if the button had been pressed; asks where something would be lost
     void cancel();  ///< fades out; it runs until that is done
     void tick();
     bool running() const { return measuring_ != nullptr; }
@@ -48,6 +48,8 @@ private:
         juce::TextEditor limit;
     };
 
+    void play(const Measurement& plan, const std::vector<InputRole>&, const std::vector<int>& inputs, int output,
+              double fullScale);
     void end();
     void take();
     void showProgress();

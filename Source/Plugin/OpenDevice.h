@@ -55,4 +55,8 @@ private:
 /// The audio devices of the app; null within a host, whose devices are not ours.
 juce::AudioDeviceManager* standaloneDevices();
 
+/// The menu of the app's window, which opens its devices, loads another state and builds the plugin anew: not while
+/// it measures. Nothing within a host.
+void enableAppOptions(bool);
+
 }  // namespace excursion::plugin

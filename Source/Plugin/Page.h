@@ -7,6 +7,7 @@
 #include "Plugin/Session.h"
 #include "Plugin/Text.h"
 
+#include <functional>
 #include <memory>
 
 namespace excursion::plugin {
@@ -32,7 +33,10 @@ public:
     virtual void useFile(const juce::File&) = 0;
     /// the document of a model without physics, which is rehearsed first
     virtual void useBox(const nlohmann::ordered_json&, const juce::String& from) = 0;
-    virtual void saveModel(const Model&) = 0;                  ///< asks for a file
+    virtual void saveModel(const Model&) = 0;  ///< asks for a file
+    /// does it, once a person agrees to lose what the session has in no file; at once where that is nothing
+    /// @param withRecording  see Session::unsaved()
+    virtual void onceAgreed(bool withRecording, const juce::String& wish, std::function<void()>) = 0;
     virtual void tell(const juce::String&, bool trouble) = 0;  ///< in the status line
 };
 

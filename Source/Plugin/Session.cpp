@@ -9,11 +9,14 @@
 #include "Engine/Take/TakeFile.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
 namespace excursion::plugin {
 namespace {
+
+constexpr auto patience = std::chrono::seconds(1);  // with files that are being read when a session ends
 
 std::string titlesOf(const std::vector<bench::HiddenEffect>& hidden)
 {
@@ -48,17 +51,17 @@ std::string sentenceOf(const std::exception_ptr& thrown)
 
 }  // namespace
 
-Session::Session()
-    : thread_([this](const std::stop_token& stop) { run(stop); }),
-      reader_([this](const std::stop_token& stop) { read(stop); })
-{
-}
+Session::Session() : thread_([this](const std::stop_token& stop) { run(stop); }) { inbox_->session = this; }
 
 Session::~Session()
 {
+    {
+        std::unique_lock lock(inbox_->mutex);
+        inbox_->session = nullptr;
+        inbox_->changed.wait_for(lock, patience, [this] { return inbox_->readers == 0; });
+    }
     cancel();
     thread_.request_stop();
-    reader_.request_stop();
     changed_.notify_all();
 }
 
@@ -73,22 +76,33 @@ void Session::order(Work work, bool saves)
 void Session::cancel()
 {
     const std::lock_guard lock(mutex_);
+    if (!working_ && std::erase_if(orders_, [](const Order& waiting) { return !waiting.ready(); }) > 0)
+        status_.words = "Cancelled.";
     std::erase_if(orders_, [](const Order& waiting) { return !waiting.saves; });
-    readings_.clear();
     shape_.reset();
     stop_.request_stop();
     status_.busy = working_ || !orders_.empty();
     changed_.notify_all();
 }
 
+/// With the mutex held: the order to be carried out now. Saves do not wait for a file that is being read; all others
+/// keep their order.
+std::vector<Session::Order>::iterator Session::next()
+{
+    if (orders_.empty() || orders_.front().ready())
+        return orders_.begin();
+    return std::find_if(orders_.begin(), orders_.end(), [](const Order& waiting) { return waiting.saves; });
+}
+
 void Session::run(const std::stop_token& stop)
 {
     std::unique_lock lock(mutex_);
     for (;;) {
-        if (!changed_.wait(lock, stop, [this] { return !orders_.empty(); }))
+        if (!changed_.wait(lock, stop, [this] { return next() != orders_.end(); }))
             return;
-        const auto [work, saves, file] = std::move(orders_.front());
-        orders_.erase(orders_.begin());
+        const auto place = next();
+        const auto [work, saves, file] = std::move(*place);
+        orders_.erase(place);
         stop_ = std::stop_source();
         working_ = true;
         status_.fraction = 0.0;
@@ -128,33 +142,30 @@ void Session::fail(const std::string& trouble)
     ++status_.failures;
 }
 
-void Session::read(const std::stop_token& stop)
+void Session::read(const std::shared_ptr<Inbox>& inbox, const ReadingPointer& reading)
 {
-    std::unique_lock lock(mutex_);
-    while (changed_.wait(lock, stop, [this] { return !readings_.empty(); })) {
-        const auto reading = readings_.front();
-        readings_.erase(readings_.begin());
-        lock.unlock();
-        try {
-            if (const auto header = headerOf(reading->path); !header.empty()) {
-                auto own = readOwnTake(header);
-                reading->take = std::move(own.take);
-                reading->sweep = std::move(own.sweep);
-            } else {
-                reading->take = readTake(reading->path);
-            }
-        } catch (const std::exception&) {
-            reading->thrown = std::current_exception();
+    try {
+        if (const auto header = headerOf(reading->path); !header.empty()) {
+            auto own = readOwnTake(header);
+            reading->take = std::move(own.take);
+            reading->sweep = std::move(own.sweep);
+        } else {
+            reading->take = readTake(reading->path);
         }
-        lock.lock();
-        came(reading);
+    } catch (const std::exception&) {
+        reading->thrown = std::current_exception();
     }
+    const std::lock_guard lock(inbox->mutex);
+    if (inbox->session != nullptr)
+        inbox->session->came(reading);
+    --inbox->readers;
+    inbox->changed.notify_all();
 }
 
-/// With the mutex held: a file has been read, or cannot be. Its order is under way, waits behind others, or was
-/// cancelled.
+/// A file has been read, or cannot be. Its order waits, or was cancelled.
 void Session::came(const ReadingPointer& reading)
 {
+    const std::lock_guard lock(mutex_);
     reading->done = true;
     const auto place = std::find_if(orders_.begin(), orders_.end(),
                                     [&](const Order& waiting) { return waiting.reading == reading; });
@@ -162,6 +173,10 @@ void Session::came(const ReadingPointer& reading)
         fail(sentenceOf(reading->thrown));
         orders_.erase(place);
         status_.busy = working_ || !orders_.empty();
+        if (!status_.busy) {
+            status_.words = status_.failure;
+            status_.trouble = true;
+        }
     } else if (place != orders_.end()) {
         orders_.erase(std::remove_if(orders_.begin(), place, [](const Order& waiting) { return !waiting.saves; }),
                       place);
@@ -257,23 +272,25 @@ void Session::open(const std::string& path)
     const auto reading = std::make_shared<Reading>();
     reading->path = path;
     const auto work = [this, reading](const Progress& progress) {
-        progress.at(0.0, "reading the take");
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, progress.stop, [&] { return reading->done; });
-        }
-        progress.at(0.0, "reading the take");  // throws where that was cancelled
-        if (reading->thrown)
-            std::rethrow_exception(reading->thrown);
         auto told = from(std::filesystem::path(reading->path).filename().string());
         told.sweep = std::move(reading->sweep);
         take(*std::exchange(reading->take, std::nullopt), told, progress);
     };
-    const std::lock_guard lock(mutex_);
-    readings_.push_back(reading);
-    orders_.push_back({work, false, reading});
-    status_.busy = true;
-    changed_.notify_all();
+    {
+        const std::lock_guard lock(mutex_);
+        if (!status_.busy) {
+            status_.words = "reading the take";
+            status_.fraction = 0.0;
+            status_.trouble = false;
+        }
+        orders_.push_back({work, false, reading});
+        status_.busy = true;
+    }
+    {
+        const std::lock_guard lock(inbox_->mutex);
+        ++inbox_->readers;
+    }
+    std::thread(read, inbox_, reading).detach();
 }
 
 void Session::open(const VirtualOrder& wanted)
@@ -300,6 +317,7 @@ void Session::keep(RecordingOptions recorded, const std::string& source, std::ve
     const std::lock_guard lock(mutex_);
     recording_ = std::make_shared<const RecordingOptions>(std::move(recorded));
     recorded_ = from(source);
+    recorded_.measured = true;
     recorded_.remarks = std::move(remarks);
     recorded_.fullScale = fullScale;
     keeps_ = true;

@@ -28,6 +28,7 @@ struct Findings {
     std::string source;                ///< where the take is from, in words
     std::vector<std::string> remarks;  ///< on the recording: what is odd in it, in sentences
     std::string truth;                 ///< what the virtual loudspeaker hides; empty for a real one
+    bool measured = false;             ///< here, of a loudspeaker: it is in no file until it is saved
     /// V at the loudspeaker for an output sample of 1.0, as it was measured; 0: not known
     double fullScale = 0.0;
     std::shared_ptr<const PreparedTake> take;
@@ -60,15 +61,15 @@ struct Adapted {
 /// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back,
 /// identify models without physics. Every
 /// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
-/// other. A new take makes what is under way stop; files are read on a second thread, so that one that is none does
-/// not.
+/// other. A new take makes what is under way stop; each file is read on a thread of its own, so that one that is no
+/// take does not, and one that never comes holds nothing up.
 class Session {
 public:
     Session();
     ~Session();
 
     /// As readSweepTake(), or readTake() for responses. What is under way goes on until the take has been read, and for
-    /// good where it cannot be.
+    /// good where it cannot be; that is a failure, see Status.
     void open(const std::string& path);
     void open(const VirtualOrder&);
     /// Keeps a recording that was just made until openKept(), whatever else is opened meanwhile.
@@ -93,6 +94,11 @@ public:
     /// with its plan and how it is imported
     void saveRecording(std::shared_ptr<const RecordingOptions>, const std::string& folder);
 
+    /// What is in no file and would be lost, in words: "the take that was measured"; empty: nothing.
+    /// @param withRecording  whether a recording of which no take has come would be lost, too
+    std::string unsaved(bool withRecording) const;
+    void noteSaved(const std::shared_ptr<const FittedPnlss>&);  ///< a page has written it
+
     void cancel();  ///< stops what is under way, and drops all waiting orders except saves
 
     struct Status {
@@ -100,7 +106,7 @@ public:
         double fraction = 0.0;
         std::string words;     ///< what is being done, or what the last order came to
         bool trouble = false;  ///< the last order failed
-        /// why the last order failed that did without stopping the others: a save, or a file to be opened
+        /// why the last save failed, or the last file could not be opened, both beside the other orders
         std::string failure;
         std::uint64_t failures = 0;
         std::uint64_t version = 0;  ///< counts the findings
@@ -132,10 +138,19 @@ private:
         Work work;
         bool saves = false;
         ReadingPointer reading = nullptr;  ///< that it waits for
+        bool ready() const { return !reading || reading->done; }
+    };
+    /// Where threads that read files leave them: one that hangs may outlive the session.
+    struct Inbox {
+        std::mutex mutex;  ///< before that of the session, where both are held
+        std::condition_variable changed;
+        Session* session = nullptr;
+        int readers = 0;
     };
     void order(Work, bool saves = false);
     void run(const std::stop_token&);
-    void read(const std::stop_token&);
+    std::vector<Order>::iterator next();
+    static void read(const std::shared_ptr<Inbox>&, const ReadingPointer&);
     void came(const ReadingPointer&);
     void fail(const std::string& trouble);
     /// @param told  Findings without a take
@@ -152,9 +167,8 @@ private:
     mutable std::mutex mutex_;                ///< of what follows
     mutable std::condition_variable_any changed_;
     std::vector<Order> orders_;
-    std::vector<ReadingPointer> readings_;  ///< that have not begun
-    std::optional<ShapeWish> shape_;        ///< of the order to shape that waits
-    std::stop_source stop_;                 ///< of the order under way
+    std::optional<ShapeWish> shape_;  ///< of the order to shape that waits
+    std::stop_source stop_;           ///< of the order under way
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
@@ -163,7 +177,10 @@ private:
     bool keeps_ = false;  ///< it has not been opened yet
     Identification identification_;
     std::optional<Adapted> adapted_;
-    std::jthread thread_, reader_;
+    std::shared_ptr<const PreparedTake> savedTake_;  ///< the last one that was
+    std::shared_ptr<const FittedPnlss> savedPnlss_;
+    const std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
+    std::jthread thread_;
 };
 
 }  // namespace excursion::plugin

@@ -36,6 +36,10 @@ void Session::saveTake(std::shared_ptr<const Findings> now, const std::string& f
                 throw Error(Error::Kind::usage, "There is no take of time signals to save.");
             progress.at(0.0, "writing the take");
             writeSweepTake({*measurement, now->sweep}, folder);
+            {
+                const std::lock_guard lock(mutex_);
+                savedTake_ = now->take;
+            }
             say("Wrote " + folder + ".");
         },
         true);
@@ -73,6 +77,26 @@ void Session::saveRecording(std::shared_ptr<const RecordingOptions> recording, c
             say("Wrote " + folder + ": the recording, its plan, and how it is imported.");
         },
         true);
+}
+
+void Session::noteSaved(const std::shared_ptr<const FittedPnlss>& pnlss)
+{
+    const std::lock_guard lock(mutex_);
+    savedPnlss_ = pnlss;
+}
+
+std::string Session::unsaved(bool withRecording) const
+{
+    const std::lock_guard lock(mutex_);
+    std::string words;
+    const auto add = [&words](const char* what) { words += (words.empty() ? "" : " and ") + std::string(what); };
+    if (findings_ && findings_->measured && findings_->take != savedTake_)
+        add("the take that was measured");
+    if (identification_.pnlss && identification_.pnlss != savedPnlss_)
+        add("the PNLSS that was fitted");
+    if (withRecording && recording_)
+        add("the last recording");
+    return words;
 }
 
 }  // namespace excursion::plugin

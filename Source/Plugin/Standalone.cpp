@@ -11,4 +11,14 @@ juce::AudioDeviceManager* standaloneDevices()
     return app != nullptr ? &app->deviceManager : nullptr;
 }
 
+void enableAppOptions(bool enabled)
+{
+    for (int k = 0; k < juce::TopLevelWindow::getNumTopLevelWindows(); ++k)
+        if (auto* window = dynamic_cast<juce::StandaloneFilterWindow*>(juce::TopLevelWindow::getTopLevelWindow(k)))
+            for (auto* child : window->juce::Component::getChildren())
+                if (auto* button = dynamic_cast<juce::TextButton*>(child);
+                    button != nullptr && button->getButtonText() == "Options")
+                    button->setEnabled(enabled);
+}
+
 }  // namespace excursion::plugin

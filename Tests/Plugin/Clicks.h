@@ -5,7 +5,21 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
+#include <thread>
+
+// of the message loop, which the tests do not run
+namespace juce {
+bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
+}
+
 namespace excursion::plugin {
+
+/// What waits for the message thread is done.
+inline void dispatch()
+{
+    while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+}
 
 /// A picture of the window, kept to be looked at; the number of its pixels (every fifth) that are not background.
 inline int picture(Editor& editor, const juce::String& name)
@@ -48,6 +62,27 @@ inline void click(Editor& editor, const juce::String& text)
     REQUIRE(button->isEnabled());
     ++clicks;
     button->onClick();
+    editor.update();
+}
+
+/// The question that a person is asked now; null: none.
+inline juce::AlertWindow* question()
+{
+    return dynamic_cast<juce::AlertWindow*>(juce::ModalComponentManager::getInstance()->getModalComponent(0));
+}
+
+/// Answers it: 1 agrees, 0 cancels.
+inline void answer(Editor& editor, int button)
+{
+    auto* const asked = question();
+    REQUIRE(asked != nullptr);
+    asked->exitModalState(button);
+    for (int k = 0; k < 200 && question() != nullptr; ++k) {
+        dispatch();
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    dispatch();
+    REQUIRE(question() == nullptr);
     editor.update();
 }
 

@@ -7,6 +7,7 @@
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Plugin/Clicks.h"
 #include "Plugin/PlayedBoxes.h"
 #include "Plugin/Processor.h"
 #include "Plugin/Walk.h"
@@ -20,11 +21,6 @@
 #include <limits>
 #include <memory>
 #include <thread>
-
-// of the message loop, which this program does not run
-namespace juce {
-bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
-}
 
 using namespace excursion;
 using namespace excursion::test;
@@ -57,9 +53,6 @@ TEST_CASE("A host hears of the latency of the model that plays, and on the messa
         }
         std::atomic<int> told {0}, elsewhere {0};
     } host;
-    const auto deliver = [] {
-        while (juce::dispatchNextMessageOnSystemQueue(true)) {}
-    };
     Processor processor;
     processor.prepareToPlay(rate, 512);
     const int driver = processor.getLatencySamples();
@@ -76,7 +69,7 @@ TEST_CASE("A host hears of the latency of the model that plays, and on the messa
     // It plays already; the thread that made it ready has left the word to the message thread.
     CHECK(host.told == 0);
     CHECK(processor.getLatencySamples() == driver);
-    deliver();
+    plugin::dispatch();
     CHECK(host.told == 1);
     CHECK(processor.getLatencySamples() != driver);
     processor.setModel(processor.model());
@@ -88,7 +81,7 @@ TEST_CASE("A host hears of the latency of the model that plays, and on the messa
     processor.prepareToPlay(rate, 512);
     CHECK(processor.getLatencySamples() != driver);
     CHECK(host.told == 3);
-    deliver();
+    plugin::dispatch();
     CHECK(host.told == 3);
     CHECK(host.elsewhere == 0);
     processor.removeListener(&host);
@@ -105,9 +98,6 @@ TEST_CASE("A host is told of a rehearsal that ends while no window is open, and 
         }
         int states = 0;
     } host;
-    const auto deliver = [] {
-        while (juce::dispatchNextMessageOnSystemQueue(true)) {}
-    };
     Processor processor;
     processor.addListener(&host);
     const auto rehearse = [&] {
@@ -115,11 +105,11 @@ TEST_CASE("A host is told of a rehearsal that ends while no window is open, and 
         processor.rehearsing().wait();
     };
     rehearse();
-    deliver();
+    plugin::dispatch();
     CHECK(host.states == 1);
     rehearse();
     processor.prepareToPlay(rate, 512);  // before a message came
-    deliver();
+    plugin::dispatch();
     CHECK(host.states == 2);
     plugin::Editor editor(processor);
     CHECK_FALSE(editor.status().contains("a gain of"));
@@ -127,7 +117,7 @@ TEST_CASE("A host is told of a rehearsal that ends while no window is open, and 
     processor.rehearsing().wait();
     editor.update();
     CHECK(editor.status().contains("a gain of"));
-    deliver();
+    plugin::dispatch();
     CHECK(host.states == 3);
     processor.removeListener(&host);
 }
@@ -156,11 +146,11 @@ TEST_CASE("Models are rehearsed, taken back and handed over while audio runs on 
     for (int k = 0; k < 3; ++k) {
         processor.rehearsing().load(boxes()[static_cast<std::size_t>(k)]->document, "a file");
         while (processor.rehearsing().status().busy) {
-            while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+            plugin::dispatch();
             CHECK(processor.getLatencySamples() > 0);
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
-        while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+        plugin::dispatch();
         CHECK(processor.box() != nullptr);
         CHECK(processor.collectMeters().faults == 0);
         processor.setModel(processor.model());

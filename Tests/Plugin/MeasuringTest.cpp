@@ -122,6 +122,34 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         editor.redo();
         CHECK(parameters.settings().fullScale == 16.0);
     }
+    SECTION("a take that is in no file is not given up unasked")
+    {
+        auto& session = processor.session();
+        CHECK(session.unsaved(false) == "the take that was measured");
+        editor.go(PageName::measure);
+        plugin::click(editor, "Measure it");
+        plugin::answer(editor, 0);
+        CHECK(!session.status().busy);
+        editor.load(juce::File("/nowhere/take.csv"));  // as if it had been dropped
+        plugin::answer(editor, 0);
+        CHECK(session.status().failures == 0);
+        plugin::click(editor, "Start measuring");
+        plugin::picture(editor, "asked");
+        plugin::answer(editor, 0);
+        CHECK(!panel.running());
+        CHECK(session.findings() == findings);
+
+        const auto folder = juce::File::createTempFile("saved");
+        editor.measure().saveTake(findings, folder);
+        session.wait();
+        CHECK(session.unsaved(true).empty());
+        folder.deleteRecursively();
+        plugin::click(editor, "Measure it");
+        CHECK(plugin::question() == nullptr);
+        CHECK(session.status().busy);
+        session.cancel();
+        session.wait();
+    }
     SECTION("a channel is played where it is among those that are open")
     {
         const auto first = processor.session().findings();
@@ -132,6 +160,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         editor.go(PageName::measure);
         panel.setOutput(3);
         plugin::click(editor, "Start measuring");
+        plugin::answer(editor, 1);
         CHECK(panel.running());
         app.run();
         REQUIRE(!panel.running());
@@ -143,6 +172,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
     {
         editor.go(PageName::measure);
         plugin::click(editor, "Start measuring");
+        plugin::answer(editor, 1);
         REQUIRE(panel.running());
         plugin::VirtualDevice::gone = true;
         app.run();
@@ -216,6 +246,26 @@ TEST_CASE("The level of a measurement rises by itself, and Stop fades out", "[pl
     CHECK(peakOf(played, end - 100, end) < 0.1f * peakOf(played, end - 8000, end - 2000));
 }
 
+TEST_CASE("Stop ends a measurement on a device that hangs", "[plugin][slow]")
+{
+    App app("1");
+    plugin::VirtualDevice::pace = 4.0;
+    plugin::click(*app.editor, "Start measuring");
+    app.run([&] { return app.panel().fraction() > 0.3; });
+    REQUIRE(app.panel().running());
+    plugin::VirtualDevice::gone = true;
+    const auto before = std::chrono::steady_clock::now();
+    plugin::click(*app.editor, "Stop");
+    app.run();
+    plugin::VirtualDevice::gone = false;
+    CHECK(!app.panel().running());
+    CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(3));
+    CHECK(!app.processor.isSuspended());
+    CHECK(app.status().contains("answers no longer"));
+    CHECK(!app.processor.session().findings());
+    CHECK(app.processor.session().unsaved(true).empty());
+}
+
 TEST_CASE("A limit ends a measurement of the app, and nothing is taken of it", "[plugin][slow]")
 {
     App app("1 3");
@@ -284,6 +334,8 @@ TEST_CASE("A recording that is no take can be saved", "[plugin][slow]")
     session.wait();
     app.editor->update();
     CHECK(session.recordingWithoutTake() == recording);
+    CHECK(session.unsaved(false).empty());
+    CHECK(session.unsaved(true) == "the last recording");
     CHECK(plugin::find<juce::TextButton>(*app.editor, "Save the take...")->isEnabled());
     REQUIRE(plugin::find<juce::TextButton>(*app.editor, "Save the recording...") != nullptr);
     const auto folder = juce::File::createTempFile("refused");

@@ -9,7 +9,12 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
+
+#ifndef _WIN32
+#include <sys/stat.h>
+#endif
 
 using namespace excursion;
 using plugin::Editor;
@@ -80,6 +85,64 @@ TEST_CASE("What is to be saved is saved, whatever is cancelled, opened or closed
     }
     CHECK(closed.holdsTake());
     CHECK(std::get<Measurement>(readTake(closed.path)).input().samples.size() == samples);
+}
+
+#ifndef _WIN32
+TEST_CASE("A file that never comes holds up neither the next one nor a save, and a session ends without it", "[plugin]")
+{
+    NewFolder folder, saved;
+    std::filesystem::create_directories(folder.path);
+    const auto pipe = (folder.path / "pipe.csv").string();
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    {
+        Session session;
+        session.open(VirtualOrder {"midbass", 3});
+        waitForTake(session);
+        session.cancel();
+        session.wait();
+        session.open(pipe);
+        session.saveTake(session.findings(), saved.path.string());
+        for (int k = 0; k < 60000 && !saved.holdsTake(); ++k)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        CHECK(saved.holdsTake());
+        CHECK(session.status().busy);
+        session.cancel();
+        session.wait();
+        CHECK(session.status().words == "Cancelled.");
+
+        session.open(pipe);
+        session.open(saved.path.string());
+        const auto name = saved.path.filename().string();
+        for (int k = 0; k < 60000 && session.findings()->source != name; ++k)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        CHECK(session.findings()->source == name);
+        session.cancel();
+        session.open(pipe);
+    }
+    // what reads the pipe is let go of, so that it ends before the test does
+    for (int k = 0; k < 3; ++k)
+        std::ofstream(pipe) << "no take";
+}
+#endif
+
+TEST_CASE("A file that cannot be read is a failure, whatever is under way", "[plugin]")
+{
+    Session session;
+    session.open("/nowhere/at all");
+    session.wait();
+    CHECK(session.status().failures == 1);
+    CHECK(session.status().trouble);
+    CHECK(session.status().words == session.status().failure);
+    session.open(VirtualOrder {"midbass", 3});
+    session.open("/nowhere/at all");
+    waitForTake(session);
+    for (int k = 0; k < 60000 && session.status().failures < 2; ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    CHECK(session.status().failures == 2);
+    CHECK(!session.status().trouble);
+    CHECK(session.status().busy);
+    session.cancel();
+    session.wait();
 }
 
 TEST_CASE("A take of sweeps is saved with its sweeps, and the take that was there when Save was pressed", "[plugin]")

@@ -2,6 +2,7 @@
 // The window itself: its size and scale, what of them is kept, where a page begins.
 #include "BlackBox/EveryClass.h"
 #include "Engine/Error.h"
+#include "Plugin/FillList.h"
 #include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
@@ -29,6 +30,26 @@ TEST_CASE("A new diagnosis is read from its beginning, wherever the one before w
     REQUIRE(lists.front()->getViewPositionY() == 150);
     editor.show(plugin::syntheticFindings(4));
     CHECK(lists.front()->getViewPositionY() == 0);
+}
+
+TEST_CASE("A list that is open closes when it gets other items, and only then", "[plugin]")
+{
+    juce::Component window;
+    window.addToDesktop(0);
+    window.setVisible(true);
+    juce::ComboBox list;
+    window.setSize(200, 60);
+    window.addAndMakeVisible(list);
+    list.setBounds(10, 10, 150, 24);
+    plugin::fillList(list, {"base", "K(x)"}, 1);
+    REQUIRE(list.getText() == "K(x)");
+    list.showPopup();
+    plugin::fillList(list, {"base", "K(x)"}, 0);
+    CHECK(list.isPopupActive());
+    CHECK(list.getText() == "K(x)");
+    plugin::fillList(list, {"base", "Bl(x)", "K(x)"}, 2);
+    CHECK(!list.isPopupActive());
+    CHECK(list.getText() == "Bl(x)");
 }
 
 TEST_CASE("The window opens within nine tenths of the screen, and what was chosen of it is kept", "[plugin]")

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The standalone app: JUCE's window around the plugin, which asks before it closes on what is in no file. Compiled for
+// the app alone.
+#include "Plugin/Editor.h"
+
+#include <juce_audio_plugin_client/Standalone/juce_StandaloneFilterWindow.h>
+
+#include <memory>
+
+namespace excursion::plugin {
+namespace {
+
+class AppWindow : public juce::StandaloneFilterWindow {
+public:
+    using StandaloneFilterWindow::StandaloneFilterWindow;
+
+    void closeButtonPressed() override { juce::JUCEApplicationBase::getInstance()->systemRequestedQuit(); }
+
+    Editor* editor() const { return dynamic_cast<Editor*>(pluginHolder->processor->getActiveEditor()); }
+};
+
+class App : public juce::JUCEApplication {
+public:
+    App()
+    {
+        juce::PropertiesFile::Options options;
+        options.applicationName = getApplicationName();
+        options.filenameSuffix = ".settings";
+        options.osxLibrarySubFolder = "Application Support";
+#if JUCE_LINUX || JUCE_BSD
+        options.folderName = "~/.config";
+#endif
+        settings_.setStorageParameters(options);
+    }
+
+    const juce::String getApplicationName() override { return JucePlugin_Name; }
+    const juce::String getApplicationVersion() override { return JucePlugin_VersionString; }
+    bool moreThanOneInstanceAllowed() override { return true; }
+
+    void initialise(const juce::String&) override
+    {
+        window_ = std::make_unique<AppWindow>(
+            getApplicationName(),
+            juce::LookAndFeel::getDefaultLookAndFeel().findColour(juce::ResizableWindow::backgroundColourId),
+            settings_.getUserSettings(), false);
+        window_->setVisible(true);
+    }
+
+    void shutdown() override
+    {
+        window_ = nullptr;
+        settings_.saveIfNeeded();
+    }
+
+    void systemRequestedQuit() override
+    {
+        auto* const editor = window_ != nullptr ? window_->editor() : nullptr;
+        if (editor == nullptr)
+            end();
+        else if (!editor->isCurrentlyBlockedByAnotherModalComponent())  // by this very question, most likely
+            editor->onceAgreed(true, "quit", [this] { end(); });
+    }
+
+private:
+    void end()
+    {
+        if (window_ != nullptr)
+            window_->pluginHolder->savePluginState();
+        quit();
+    }
+
+    juce::ApplicationProperties settings_;
+    std::unique_ptr<AppWindow> window_;
+};
+
+}  // namespace
+}  // namespace excursion::plugin
+
+juce::JUCEApplicationBase* juce_CreateApplication();
+juce::JUCEApplicationBase* juce_CreateApplication() { return new excursion::plugin::App(); }
