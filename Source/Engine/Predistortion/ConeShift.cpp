@@ -54,7 +54,8 @@ ConeShift::ConeShift(const LinearMotion& motion, double spacing, double tick, co
       most_(motion.mostCorrection),
       share_(1.0 - std::exp(-tick * motion.resonance / meanPeriods)),
       middle_(Eigen::VectorXd::Zero(ahead.size())),
-      range_(Eigen::VectorXd::Zero(ahead.size()))
+      range_(Eigen::VectorXd::Zero(ahead.size())),
+      coasted_(Eigen::VectorXd::Zero(times.size()))
 {
 }
 
@@ -76,11 +77,12 @@ void ConeShift::step()
         soFar_.step(told_);
 }
 
-void ConeShift::addTo(Eigen::VectorXd& x, const Eigen::MatrixXd& coasting) const
+void ConeShift::addTo(Eigen::VectorXd& x, const LaidRows& coasting)
 {
     if (!happens_)
         return;
-    x.noalias() += coasting * soFar_.state();
+    coasting.multiply(soFar_.state().data(), coasted_.data());
+    x += coasted_;
     x.noalias() += lately_ * perVolt_;
 }
 

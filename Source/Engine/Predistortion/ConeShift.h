@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/LaidRows.h"
 #include "Engine/Predistortion/LinearMotion.h"
 #include "Engine/Predistortion/Reference.h"
 
@@ -30,7 +31,7 @@ public:
 
     /// Adds the shift so far, as it will be at the times if what was asked for lately goes on.
     /// @param coasting  Foresight::coasting at the times
-    void addTo(Eigen::VectorXd& x, const Eigen::MatrixXd& coasting) const;
+    void addTo(Eigen::VectorXd& x, const LaidRows& coasting);
 
     /// The shift at the times of a plan by what will be asked for: its middle, and how far from that it may be.
     /// @param reach  m, how far the cone will go
@@ -46,7 +47,7 @@ private:
     std::vector<double> least_, most_;        ///< V, see LinearMotion
     double share_;                            ///< that a tick has of the running mean
     double told_ = 0.0, lately_ = 0.0;        ///< V; lately_: running mean
-    Eigen::VectorXd middle_, range_;
+    Eigen::VectorXd middle_, range_, coasted_;
 };
 
 }  // namespace excursion

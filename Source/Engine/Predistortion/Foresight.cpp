@@ -40,6 +40,18 @@ Foresight::Foresight(const LinearMotion& motion, const Eigen::MatrixXd& basis, c
     }
 }
 
+void Foresight::sharpen()
+{
+    constexpr double share = 1.0 / 24.0;
+    const auto steps = driven.cols();
+    Eigen::MatrixXd filter = Eigen::MatrixXd::Identity(steps, steps) * (1.0 + 2.0 * share);
+    for (Eigen::Index k = 0; k + 1 < steps; ++k)
+        filter(k, k + 1) = filter(k + 1, k) = -share;
+    if (steps > 0)
+        filter(0, 0) -= share;
+    driven = (driven * filter).eval();
+}
+
 Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& parts, Bands::Values most, double limit)
 {
     Bands::Values factors {};

@@ -23,6 +23,10 @@ struct Foresight {
     /// @param since      s, how long before now the first step began; less than a step
     Foresight(const LinearMotion&, const Eigen::MatrixXd& basis, const Eigen::VectorXd& times, Eigen::Index steps,
               double step, double since);
+
+    /// Inputs that are held reach a cone weaker than the curve through them, by (w T)^2/24 at most: this makes up for
+    /// it. Before the first step is what is not known, and after the last one silence.
+    void sharpen();
 };
 
 /// The largest factors of three parts with which |rest + sum_b factor_b part_b| stays within the limit at every time.

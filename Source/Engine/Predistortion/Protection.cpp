@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Protection.h"
 
+#include "Engine/Predistortion/Foresight.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,19 +43,6 @@ int spacing(int samples, double periods, double f0, double rate)
 /// What a margin leaves of the limit.
 double leftBy(double uncertainty, double margin) { return std::exp(-uncertainty * margin); }
 
-/// Inputs that are held for a step each reach a cone weaker than the curve through them, by (w T)^2/24 at most: this
-/// makes up for it. Before the first one is what is not known, and after the last one silence.
-Eigen::MatrixXd sharpened(Eigen::Index steps)
-{
-    constexpr double share = 1.0 / 24.0;
-    Eigen::MatrixXd filter = Eigen::MatrixXd::Identity(steps, steps) * (1.0 + 2.0 * share);
-    for (Eigen::Index k = 0; k + 1 < steps; ++k)
-        filter(k, k + 1) = filter(k + 1, k) = -share;
-    if (steps > 0)
-        filter(0, 0) -= share;
-    return filter;
-}
-
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
 }  // namespace
@@ -72,9 +61,6 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
       split_(firstCorner * motion.resonance, secondCorner * motion.resonance, rate_),
       wish_ {Reference(motion, rate_ / wishStep_), Reference(motion, rate_ / wishStep_),
              Reference(motion, rate_ / wishStep_)},
-      coast_(motion, wish_.front().basis(), times_.coasting, 0, 1.0, 0.0),
-      ahead_(motion, basis.size() > 0 ? basis : wish_.front().basis(), times_.plan, known_ / planStep_,
-             planStep_ / rate_, (committed_ - delay + 0.5) / rate_),
       shift_(motion, wishStep_ / rate_, tick / rate_, times_.coasting, times_.plan),
       uncertainty_(motion.uncertainty),
       sent_(static_cast<std::size_t>(committed_), 0.0),
@@ -90,7 +76,13 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
       cool_(motion, rate_),
       heated_(motion.ohms > 0.0)
 {
-    ahead_.driven = (ahead_.driven * sharpened(ahead_.driven.cols())).eval();
+    const Foresight wish(motion, wish_.front().basis(), times_.coasting, 0, 1.0, 0.0);
+    Foresight plan(motion, basis.size() > 0 ? basis : wish_.front().basis(), times_.plan, known_ / planStep_,
+                   planStep_ / rate_, (committed_ - delay + 0.5) / rate_);
+    plan.sharpen();
+    byWish_ = LaidRows(wish.coasting);
+    byCone_ = LaidRows(plan.coasting);
+    byInput_ = LaidRows(plan.driven);
     std::array<double, window> weight {};
     double sum = 0.0;
     for (int k = 0; k < window; ++k)
@@ -98,16 +90,16 @@ Protection::Protection(const LinearMotion& motion, const RealTimeOptions& option
     for (int k = 0; k < window; ++k)
         for (int j = 0; j < tick; ++j)
             shape_[static_cast<std::size_t>(k + j)] += weight[static_cast<std::size_t>(k)] / sum;
-    const auto steps = ahead_.driven.cols();
-    future_.resize(ahead_.coasting.rows());
-    rest_.resize(ahead_.coasting.rows());
-    drive_.resize(steps);
-    partDrives_.resize(steps, static_cast<Eigen::Index>(bands));
-    parts_.resize(ahead_.coasting.rows(), static_cast<Eigen::Index>(bands));
-    state_.resize(coast_.coasting.cols());
-    coasted_.resize(coast_.coasting.rows());
-    aside_.resize(coast_.coasting.rows());
-    wishes_.resize(coast_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    constexpr auto parts = static_cast<Eigen::Index>(bands);
+    future_.resize(times_.plan.size());
+    rest_.resize(times_.plan.size());
+    drives_.resize(plan.driven.cols(), 1 + parts);
+    driven_.resize(times_.plan.size(), 1 + parts);
+    parts_.resize(times_.plan.size(), parts);
+    state_.resize(wish.coasting.cols());
+    coasted_.resize(times_.coasting.size());
+    aside_.resize(times_.coasting.size());
+    wishes_.resize(times_.coasting.size(), parts);
     reset();
 }
 
@@ -180,15 +172,18 @@ void Protection::look()
     if (!(limit > 0.0 || power_.value() > 0.0))
         return;
     state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
-    coasted_.noalias() = coast_.coasting * state_;
+    byWish_.multiply(state_.data(), coasted_.data());
     aside_.setConstant(offset_);
-    shift_.addTo(aside_, coast_.coasting);
-    coasted_ += aside_;
-    const double farthest = coasted_.cwiseAbs().maxCoeff() + reserve_;
+    shift_.addTo(aside_, byWish_);
+    const double farthest = (coasted_ + aside_).cwiseAbs().maxCoeff() + reserve_;
     coasts_ = std::max(coasts_, farthest);
     if (farthest * limit > wishShare) {
-        for (std::size_t b = 0; b < bands; ++b)
-            wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
+        constexpr auto last = static_cast<Eigen::Index>(bands) - 1;
+        for (Eigen::Index b = 0; b < last; ++b) {
+            byWish_.multiply(wish_[static_cast<std::size_t>(b)].state().data(), wishes_.col(b).data());
+            coasted_ -= wishes_.col(b);
+        }
+        wishes_.col(last) = coasted_;
         const auto need = largestWithin(aside_, wishes_, {1.0, 1.0, 1.0}, std::max(0.0, wishShare / limit - reserve_));
         for (std::size_t b = 0; b < bands; ++b)
             need_[b] = std::min(need_[b], need[b]);
@@ -226,25 +221,26 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
         share_ = reach_;
         return;
     }
-    drive_.setZero();
-    partDrives_.setZero();
+    // What is decided comes first, then what the factors of this tick act on, band by band.
+    drives_.setZero();
     for (std::size_t k = 0; k < sent_.size(); ++k)
-        drive_[static_cast<Eigen::Index>(k / planStep_)] += sent_[(sentAt_ + k) % sent_.size()] / planStep_;
+        drives_(static_cast<Eigen::Index>(k / planStep_), 0) += sent_[(sentAt_ + k) % sent_.size()] / planStep_;
     for (std::size_t k = 0, from = oldest_; k < latency; ++k, from = from + 1 == latency ? 0 : from + 1) {
         const auto step = static_cast<Eigen::Index>((sent_.size() + k) / planStep_);
         for (std::size_t b = 0; b < bands; ++b) {
             const double u = delayed_[b][from] / planStep_;
-            drive_[step] += u * gain_[b][k];
-            partDrives_(step, static_cast<Eigen::Index>(b)) += u * shape_[k];
+            drives_(step, 0) += u * gain_[b][k];
+            drives_(step, static_cast<Eigen::Index>(b) + 1) += u * shape_[k];
         }
     }
-    const Eigen::Map<const Eigen::Vector3d> now(factors.data());
-    rest_.noalias() = ahead_.coasting * cone;
-    rest_.noalias() += ahead_.driven * drive_;
+    byInput_.multiplyFour(drives_.data(), driven_.data());
+    byCone_.multiply(cone.data(), rest_.data());
+    rest_ += driven_.col(0);
     rest_.array() += offset_;
-    drive_.noalias() = partDrives_ * now;
+    parts_ = driven_.rightCols<bands>();
     future_ = rest_;
-    future_.noalias() += ahead_.driven * drive_;
+    for (std::size_t b = 0; b < bands; ++b)
+        future_ += factors[b] * parts_.col(static_cast<Eigen::Index>(b));
     if (shift_.happens()) {
         shift_.foresee(std::min(future_.cwiseAbs().maxCoeff(), 1.0 / limit));
         rest_ += shift_.middle();
@@ -254,8 +250,6 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
         share_ = (future_.cwiseAbs().maxCoeff() + reserve_) * limit;
     }
     if (share_ > planShare) {
-        for (Eigen::Index b = 0; b < parts_.cols(); ++b)  // a product of two matrices would allocate
-            parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
         const double room = std::max(0.0, planShare / limit - reserve_);
         if (shift_.happens() && room > 0.0)
             for (Eigen::Index i = 0; i < rest_.size(); ++i) {  // in a smaller room: the same as farther out

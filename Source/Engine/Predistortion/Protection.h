@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/LaidRows.h"
 #include "Engine/Predistortion/Bands.h"
 #include "Engine/Predistortion/ConeShift.h"
-#include "Engine/Predistortion/Foresight.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/HeatFactor.h"
 #include "Engine/Predistortion/LinearMotion.h"
@@ -121,7 +121,9 @@ private:
     LookTimes times_;
     Bands split_;
     std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
-    Foresight coast_, ahead_;
+    // m, where a cone will be: one that moved as the wish and is left alone, the cone itself, and by what is played to
+    // it
+    LaidRows byWish_, byCone_, byInput_;
     ConeShift shift_;
     /// relative change of the excursion per relative error of the parameters
     double uncertainty_;
@@ -167,8 +169,8 @@ private:
     Factors factors_;
 
     // Room for decide().
-    Eigen::VectorXd future_, rest_, drive_, coasted_, aside_, state_;
-    Eigen::MatrixXd parts_, partDrives_, wishes_;
+    Eigen::VectorXd future_, rest_, coasted_, aside_, state_;
+    Eigen::MatrixXd drives_, driven_, parts_, wishes_;
 };
 
 }  // namespace excursion
