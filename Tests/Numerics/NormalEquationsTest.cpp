@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/NormalEquations.h"
 
+#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
 #include <cmath>

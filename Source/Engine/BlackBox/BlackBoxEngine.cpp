@@ -47,7 +47,8 @@ void BlackBoxEngine::resetPlaying()
 void BlackBoxEngine::warm(const Warmth& warmth)
 {
     if (bend_)
-        bend_->warm(warmth.heat);
+        bend_->warm(warmth);
+    amplifier_.charge(warmth.charge);
 }
 
 void BlackBoxEngine::pass(const double* volts, std::size_t n)

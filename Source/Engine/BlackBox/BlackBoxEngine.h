@@ -29,7 +29,7 @@ public:
     void reset() override;
     void resetBending() override;
     void resetPlaying() override;
-    Warmth warmth() const override { return {.heat = bend_ ? bend_->heat() : 0.0}; }
+    Warmth warmth() const override { return bend_ ? bend_->warmth() : Warmth {.charge = amplifier_.charge()}; }
     void warm(const Warmth&) override;
     void pass(const double* volts, std::size_t n) override;
     void set(const PredistortionControls&) override;

@@ -52,6 +52,8 @@ BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sam
       target_(ownLinearPart(model.box), sampleRate),
       protection_(model.box, model.region, model.rest, model.rehearsal, sampleRate, behind_, coupling),
       truth_(model.box, model.region),
+      signal_(coupling, sampleRate),
+      added_(coupling, model.box.linear.sampleRate),
       x_(truth_.states()),
       z_(truth_.seen() + 1),
       q_(truth_.combinations()),
@@ -74,6 +76,7 @@ void BlackBoxPredistorter::reset()
 {
     target_.reset();
     protection_.reset();
+    signal_.reset();
     toModel_.reset();
     back_.reset();
     linearizer_.reset();
@@ -101,6 +104,20 @@ void BlackBoxPredistorter::standStill()
     std::copy(rest_.x.begin(), rest_.x.end(), x_.begin());
     std::fill(q_.begin(), q_.end(), 0.0);
     std::copy(rest_.q.begin(), rest_.q.end(), q_.begin());
+    added_.reset();
+}
+
+void BlackBoxPredistorter::warm(const Warmth& warmth)
+{
+    protection_.warm(warmth.heat);
+    signal_.charge(warmth.charge);
+}
+
+void BlackBoxPredistorter::pass(const double* volts, std::size_t n)
+{
+    protection_.pass(volts, n);
+    for (std::size_t k = 0; k < n; ++k)
+        signal_.take(protection_.sound(volts[k]) ? protection_.bounded(volts[k]) : 0.0);
 }
 
 void BlackBoxPredistorter::set(const PredistortionControls& controls)
@@ -131,7 +148,7 @@ void BlackBoxPredistorter::follow(const BlackBoxLinearizer::Sample& sample, doub
 {
     double apart = 0.0;
     if (moves_) {
-        const double sum = sample.input + amountNow() * sample.correction,
+        const double sum = sample.input + added_.pass(amountNow() * sample.correction),
                      u = on_ ? std::clamp(sum, -limit, limit) : sum;
         truth_.see(x_.data(), u, z_.data());
         truth_.combinationsAt(z_.data(), u, nullptr, q_.data());
@@ -174,7 +191,7 @@ void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
         near_.aim(protection_.near());
         effort_.aim(protection_.effort());
         const double limit = std::min(bound_, protection_.voltageLimit());
-        toModel_.push(u);
+        toModel_.push(signal_.pass(u));
         for (double v = 0.0; toModel_.pull(v);) {
             const double made = correctionFor(v, limit);
             if (skip_ > 0) {

@@ -4,10 +4,12 @@
 #include "Engine/BlackBox/BlackBoxLinearizer.h"
 #include "Engine/BlackBox/BlackBoxRehearsal.h"
 #include "Engine/BlackBox/BoxProtection.h"
+#include "Engine/Predistortion/CouplingFilter.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/Peak.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/TargetFilter.h"
+#include "Engine/Predistortion/Warmth.h"
 
 #include <atomic>
 #include <cstddef>
@@ -53,10 +55,11 @@ public:
     /// correction has faded. Switched on again, it hears the signal for 0.1 s, and then the correction fades in.
     void turn(bool on);
 
-    double heat() const { return protection_.heat(); }  ///< W, see BoxProtection
-    void warm(double heat) { protection_.warm(heat); }
-    /// While process() is not called: the loudspeaker is given these volts.
-    void pass(const double* volts, std::size_t n) { protection_.pass(volts, n); }
+    /// Without slow memories: the model tells of none.
+    Warmth warmth() const { return {.heat = protection_.heat(), .charge = signal_.charge()}; }
+    void warm(const Warmth&);
+    /// While process() is not called: the amplifier is given these volts.
+    void pass(const double* volts, std::size_t n);
 
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
@@ -86,6 +89,9 @@ private:
     BoxProtection protection_;
     /// the model driven by the output, if its output is the excursion
     BlackBoxStep truth_;
+    /// What reaches the loudspeaker, which is what the model hears: of the signal, and, at the model's rate, of the
+    /// correction
+    CouplingFilter signal_, added_;
     std::vector<double> x_, z_, q_;
     Rest rest_;
     double still_;  ///< the output at rest
