@@ -172,7 +172,7 @@ std::vector<int> oddRandomLines(const Plan& plan, std::mt19937_64& random)
     for (int group = first; group <= last; group += 8) {
         const int leftOut = group == first ? 3 : member(random);
         for (int i = 0; i < 4; ++i)
-            if (i != leftOut && group + 2 * i <= last)
+            if ((plan.everyOdd || i != leftOut) && group + 2 * i <= last)
                 lines.push_back(group + 2 * i);
     }
     return lines;
@@ -188,7 +188,7 @@ Measurement record(const Loudspeaker& driver, const Plan& plan, std::mt19937_64&
     e.periods = plan.periods;
     e.realizations = plan.realizations;
     e.levels = plan.levels;
-    e.grid = "odd-random";
+    e.grid = plan.everyOdd ? "odd" : "odd-random";
     e.shape = plan.pink ? "pink" : "white";
     e.bandLow = plan.bandLow;
     e.bandHigh = plan.bandHigh;

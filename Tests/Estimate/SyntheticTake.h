@@ -38,9 +38,10 @@ struct Plan {
     double noiseDb = -300.0;  ///< white, of each channel, relative to its rms at the loudest level
     bool force = false;       ///< mechanical-only: force in, displacement out
     std::vector<Quantity> outputs {Quantity::current, Quantity::displacement};
+    bool everyOdd = false;  ///< the grid has all odd lines
 };
 
-/// Lines of an odd-random grid: one odd line at random left out of each four.
+/// Lines of an odd-random grid: one odd line at random left out of each four, or none.
 std::vector<int> oddRandomLines(const Plan&, std::mt19937_64&);
 
 /// The take, settled from the first sample and half a period longer than its excitation.

@@ -21,13 +21,40 @@ constexpr std::size_t fewestLines = 40;
 constexpr double fewestOctaves = 2.0, explainedFrom = 0.65, explainedEverywhere = 0.4, faintest = -60.0;
 constexpr std::size_t parts = 4;
 
-/// One line of one realization: what it holds, what each power of the signal would put there.
+using Powers = std::array<std::complex<double>, highestPower - 1>;
+
+/// One line of one realization: what it holds, and what each power of the signal would put there: of what the excited
+/// lines hold, and of all that the channel holds.
 struct Line {
     int k;
     std::complex<double> value;
     double noise;
-    std::array<std::complex<double>, highestPower - 1> powers;
+    Powers ofExcited, ofAll;
 };
+
+/// Spectra of the powers of a signal, [n - 2].
+std::vector<std::vector<std::complex<double>>> powersOf(const std::vector<double>& signal, double offset, double scale)
+{
+    std::vector<std::vector<std::complex<double>>> powers;
+    std::vector<double> power(signal.size());
+    for (int n = 2; n <= highestPower; ++n) {
+        for (std::size_t t = 0; t < signal.size(); ++t)
+            power[t] = scale * std::pow((signal[t] - offset) / scale, n);
+        powers.push_back(fft(power));
+    }
+    return powers;
+}
+
+/// What the channel holds on the excited lines, in time.
+std::vector<double> onExcitedLines(const AveragedPeriods& averages, const Channel& channel, int level, int realization)
+{
+    const auto period = static_cast<std::size_t>(averages.excitation().period);
+    const auto& mean = averages.spectrum(channel, level, realization).mean;
+    std::vector<std::complex<double>> kept(mean.size());
+    for (const int k : averages.lines())
+        kept[static_cast<std::size_t>(k)] = mean[static_cast<std::size_t>(k)];
+    return inverseFft(kept, period);
+}
 
 /// The lines that the excitation leaves out, without what goes with the partner; `signal` receives the channel's power.
 std::vector<Line> leftOut(const AveragedPeriods& averages, const Channel& channel, const Channel& partner, int level,
@@ -36,14 +63,8 @@ std::vector<Line> leftOut(const AveragedPeriods& averages, const Channel& channe
     const auto& excited = averages.lines();
     const auto& beside = averages.spectrum(partner, level, realization);
     const auto& averaged = averages.spectrum(channel, level, realization);
-    const auto& y = averages.inTime(channel, level, realization);
-    std::vector<std::vector<std::complex<double>>> powers;
-    std::vector<double> power(y.size());
-    for (int n = 2; n <= highestPower; ++n) {
-        for (std::size_t t = 0; t < y.size(); ++t)
-            power[t] = scale * std::pow((y[t] - offset) / scale, n);
-        powers.push_back(fft(power));
-    }
+    const auto ofExcited = powersOf(onExcitedLines(averages, channel, level, realization), 0.0, scale);
+    const auto ofAll = powersOf(averages.inTime(channel, level, realization), offset, scale);
     std::vector<Line> lines;
     for (int k = excited.front(); k <= excited.back(); ++k) {
         const auto place = static_cast<std::size_t>(k);
@@ -60,9 +81,11 @@ std::vector<Line> leftOut(const AveragedPeriods& averages, const Channel& channe
         const double noise = averaged.variance.empty()
                                  ? 0.0
                                  : averaged.variance[place] + std::norm(gain) * beside.variance[place];
-        Line line {k, averaged.mean[place] - gain * beside.mean[place], noise, {}};
-        for (std::size_t n = 0; n < powers.size(); ++n)
-            line.powers[n] = powers[n][place];
+        Line line {k, averaged.mean[place] - gain * beside.mean[place], noise, {}, {}};
+        for (std::size_t n = 0; n < ofAll.size(); ++n) {
+            line.ofExcited[n] = ofExcited[n][place];
+            line.ofAll[n] = ofAll[n][place];
+        }
         lines.push_back(line);
     }
     return lines;
@@ -127,21 +150,26 @@ std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channe
         return std::nullopt;
 
     const auto F = static_cast<Eigen::Index>(used.size());
-    Eigen::MatrixXd A(2 * F, highestPower - 1);
     Eigen::VectorXd b(2 * F);
+    const auto weighted = [&](Powers Line::*powers) {
+        Eigen::MatrixXd A(2 * F, highestPower - 1);
+        for (Eigen::Index i = 0; i < F; ++i)
+            for (Eigen::Index n = 0; n < A.cols(); ++n) {
+                const auto power = weight[static_cast<std::size_t>(i)]
+                                   * (used[static_cast<std::size_t>(i)].*powers)[static_cast<std::size_t>(n)];
+                A(i, n) = power.real();
+                A(F + i, n) = power.imag();
+            }
+        return A;
+    };
     for (Eigen::Index i = 0; i < F; ++i) {
-        const auto& line = used[static_cast<std::size_t>(i)];
-        const double w = weight[static_cast<std::size_t>(i)];
-        b[i] = w * line.value.real();
-        b[F + i] = w * line.value.imag();
-        for (Eigen::Index n = 0; n < A.cols(); ++n) {
-            A(i, n) = w * line.powers[static_cast<std::size_t>(n)].real();
-            A(F + i, n) = w * line.powers[static_cast<std::size_t>(n)].imag();
-        }
+        const auto value = weight[static_cast<std::size_t>(i)] * used[static_cast<std::size_t>(i)].value;
+        b[i] = value.real();
+        b[F + i] = value.imag();
     }
-    const Eigen::VectorXd a = pivotedSolveVector(A, b);
+    const auto A = weighted(&Line::ofExcited);
+    const Eigen::VectorXd left = b - A * pivotedSolveVector(A, b);
     // Over a part of the band the motion of a cone is nearly a function of its force; over all of it, it is not.
-    const Eigen::VectorXd left = b - A * a;
     std::vector<Eigen::Index> byFrequency(used.size());
     std::iota(byFrequency.begin(), byFrequency.end(), Eigen::Index {0});
     std::stable_sort(byFrequency.begin(), byFrequency.end(), [&](Eigen::Index i, Eigen::Index j) {
@@ -165,6 +193,7 @@ std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channe
     overload.level = level;
     overload.db = decibelsOf(bent / signal);
     overload.explained = explainedOf(0, used.size());
+    const Eigen::VectorXd a = pivotedSolveVector(weighted(&Line::ofAll), b);
     for (const double extreme : {most, least}) {
         double before = extreme / scale;
         for (int n = 2; n <= highestPower; ++n)
