@@ -16,7 +16,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr auto patience = std::chrono::seconds(1);  // with files that are being read when a session ends
+constexpr auto readingPatience = std::chrono::seconds(1);  // with files that are being read when a session ends
 
 std::string titlesOf(const std::vector<bench::HiddenEffect>& hidden)
 {
@@ -58,7 +58,7 @@ Session::~Session()
     {
         std::unique_lock lock(inbox_->mutex);
         inbox_->session = nullptr;
-        inbox_->changed.wait_for(lock, patience, [this] { return inbox_->readers == 0; });
+        inbox_->changed.wait_for(lock, readingPatience, [this] { return inbox_->readers == 0; });
     }
     cancel();
     thread_.request_stop();
