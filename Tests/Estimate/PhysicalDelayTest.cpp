@@ -49,6 +49,23 @@ TEST_CASE("A motion that is late is told to a few microseconds, and one that is 
     CHECK_FALSE(none.clear);
 }
 
+TEST_CASE("The corner of a sensor is no delay where it can be seen, and hides none", "[delay]")
+{
+    for (const double corner : {5e2, 7e2, 1.2e3})
+        for (const double q : {0.8, std::numbers::sqrt2, 2.0})
+            for (const double late : {0.0, 1.5e-3}) {
+                auto frf = mobility(0.0, 0.0, 1.0, 5.0, late);
+                const double T = 1.0 / (2.0 * std::numbers::pi * corner);
+                for (std::size_t k = 0; k < frf.value.size(); ++k) {
+                    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frf.frequency[k]);
+                    frf.value[k] /= 1.0 + q * T * s + T * T * s * s;
+                }
+                const auto told = motionDelay(frf, Quantity::velocity, MotionReference::force);
+                INFO(corner << " Hz, q " << q << ", " << late << " s late: " << told.seconds);
+                CHECK(told.clear == (late > 0.0));
+            }
+}
+
 TEST_CASE("A part that swings on the cone does not pass for a delay where few lines are left to tell", "[delay]")
 {
     int judged = 0;

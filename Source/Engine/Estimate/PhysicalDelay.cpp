@@ -176,6 +176,18 @@ double plateauEnd(const std::vector<Line>& lines, double resonance)
 
 }  // namespace
 
+/// Whether the corner of a sensor makes what looks late: over all lines the polynomial of the motion times
+/// 1 + q T s + T^2 s^2, which is two more powers of s, leaves far less than it does with a delay. Phases alone would
+/// not tell: a corner of q = sqrt(2) turns them as a delay of q T does, but it takes off the top as well.
+bool sensorHasCorner(const std::vector<Line>& lines, Basis basis)
+{
+    constexpr double far = 0.5;
+    const double late = fitLines(lines, basis).relativeError;
+    basis.push_back(power(3));
+    basis.push_back(power(4));
+    return fitLines(lines, basis).relativeErrorWithout < far * late;
+}
+
 PhysicalDelay currentDelay(const Frf& admittance)
 {
     const auto all = reciprocalLines(admittance, 0);
@@ -275,7 +287,9 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
     }
     verdict.doubtful = verdict.clear && !confirmed
                        && !judge(fits, lines.back().omega, {thresholds.radians, roundFall}).clear;
-    verdict.clear = verdict.clear && !verdict.doubtful;
+    verdict.clear = verdict.clear && !verdict.doubtful
+                    && !(drive == MotionReference::force
+                         && sensorHasCorner(band(all, lines.front().omega, all.back().omega), basis));
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
                        && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });
