@@ -21,7 +21,7 @@ constexpr std::size_t fewestLines = 40;
 constexpr double fewestOctaves = 2.0, explainedFrom = 0.65, explainedEverywhere = 0.4, faintest = -60.0;
 constexpr std::size_t parts = 4;
 
-using Powers = std::array<std::complex<double>, highestPower - 1>;
+using BendPowers = std::array<std::complex<double>, highestPower - 1>;
 
 /// One line of one realization: what it holds, and what each power of the signal would put there: of what the excited
 /// lines hold, and of all that the channel holds.
@@ -29,7 +29,7 @@ struct Line {
     int k;
     std::complex<double> value;
     double noise;
-    Powers ofExcited, ofAll;
+    BendPowers ofExcited, ofAll;
 };
 
 /// Spectra of the powers of a signal, [n - 2].
@@ -151,7 +151,7 @@ std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channe
 
     const auto F = static_cast<Eigen::Index>(used.size());
     Eigen::VectorXd b(2 * F);
-    const auto weighted = [&](Powers Line::*powers) {
+    const auto weighted = [&](BendPowers Line::*powers) {
         Eigen::MatrixXd A(2 * F, highestPower - 1);
         for (Eigen::Index i = 0; i < F; ++i)
             for (Eigen::Index n = 0; n < A.cols(); ++n) {
