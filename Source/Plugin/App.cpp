@@ -57,7 +57,7 @@ public:
         auto* const editor = window_ != nullptr ? window_->editor() : nullptr;
         if (editor == nullptr)
             end();
-        else if (!editor->isCurrentlyBlockedByAnotherModalComponent())  // by this very question, most likely
+        else
             editor->onceAgreed(true, "quit", [this] { end(); });
     }
 

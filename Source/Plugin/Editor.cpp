@@ -118,6 +118,7 @@ void Editor::show(const std::shared_ptr<const Findings>& findings)
 
 void Editor::update()
 {
+    hearAnswer();
     const auto status = owner_.session().status();
     const auto rehearsal = owner_.rehearsing().status();
     auto* measuring = measure_.measuring();

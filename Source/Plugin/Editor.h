@@ -9,8 +9,11 @@
 #include "Plugin/LinearizePage.h"
 #include "Plugin/MeasurePage.h"
 #include "Plugin/Preferences.h"
+#include "Plugin/Question.h"
 
 #include <array>
+#include <functional>
+#include <memory>
 
 namespace excursion::plugin {
 
@@ -83,6 +86,7 @@ private:
     void noteRehearsal();
     bool mayStep(const juce::String& wish);
     void noteLadder(const std::shared_ptr<const Findings>&);
+    void hearAnswer();
 
     juce::SharedResourcePointer<look::Look> look_;
     Processor& owner_;
@@ -122,6 +126,8 @@ private:
     std::shared_ptr<const PreparedTake> take_;  ///< that the history is of
     std::vector<std::string> rungs_;            ///< effects of the ladder, as the history knows it
     bool laddering_ = false;                    ///< the history itself moves the ladder
+    std::unique_ptr<Question> question_;        ///< that is asked; null: none
+    std::function<void()> agreed_;              ///< what is done where a person agrees
 };
 
 }  // namespace excursion::plugin

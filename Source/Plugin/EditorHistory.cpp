@@ -191,17 +191,22 @@ void Editor::onceAgreed(bool withRecording, const juce::String& wish, std::funct
         then();
         return;
     }
-    const auto question = juce::MessageBoxOptions()
-                              .withIconType(juce::MessageBoxIconType::QuestionIcon)
-                              .withTitle("Not saved")
-                              .withMessage(lost + " would be lost: there is no file of it yet.")
-                              .withButton(wish.substring(0, 1).toUpperCase() + wish.substring(1))
-                              .withButton("Cancel")
-                              .withAssociatedComponent(this);
-    juce::AlertWindow::showAsync(question, [window = SafePointer<Editor>(this), then = std::move(then)](int button) {
-        if (window != nullptr && button == 1)
-            then();
-    });
+    question_ = std::make_unique<Question>(lost + " would be lost: there is no file of it yet.",
+                                           wish.substring(0, 1).toUpperCase() + wish.substring(1));
+    agreed_ = std::move(then);
+    body_.addAndMakeVisible(*question_);
+    question_->setBounds(body_.getLocalBounds());
+    question_->enterModalState(isShowing());
+}
+
+void Editor::hearAnswer()
+{
+    if (!question_ || !question_->answered())
+        return;
+    const auto asked = std::move(question_);
+    const auto then = std::exchange(agreed_, {});
+    if (*asked->answered())
+        then();
 }
 
 /// What came of a model without physics that was loaded.

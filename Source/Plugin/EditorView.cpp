@@ -169,6 +169,8 @@ void Editor::layOut(juce::Rectangle<int> area)
     area.removeFromBottom(4);
     for (auto* page : pages_)
         page->setBounds(area);
+    if (question_)
+        question_->setBounds(body_.getLocalBounds());
 }
 
 }  // namespace excursion::plugin

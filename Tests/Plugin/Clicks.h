@@ -5,9 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <chrono>
-#include <thread>
-
 // of the message loop, which the tests do not run
 namespace juce {
 bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
@@ -66,24 +63,24 @@ inline void click(Editor& editor, const juce::String& text)
 }
 
 /// The question that a person is asked now; null: none.
-inline juce::AlertWindow* question()
+inline Question* question(juce::Component& parent)
 {
-    return dynamic_cast<juce::AlertWindow*>(juce::ModalComponentManager::getInstance()->getModalComponent(0));
+    for (auto* child : parent.getChildren()) {
+        if (auto* asked = dynamic_cast<Question*>(child); asked != nullptr && asked->isVisible())
+            return asked;
+        if (auto* asked = question(*child))
+            return asked;
+    }
+    return nullptr;
 }
 
-/// Answers it: 1 agrees, 0 cancels.
-inline void answer(Editor& editor, int button)
+inline void answer(Editor& editor, bool agreed)
 {
-    auto* const asked = question();
+    auto* const asked = question(editor);
     REQUIRE(asked != nullptr);
-    asked->exitModalState(button);
-    for (int k = 0; k < 200 && question() != nullptr; ++k) {
-        dispatch();
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    dispatch();
-    REQUIRE(question() == nullptr);
+    asked->answer(agreed);
     editor.update();
+    REQUIRE(question(editor) == nullptr);
 }
 
 inline void settle(Editor& editor)

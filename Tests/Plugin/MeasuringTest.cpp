@@ -128,14 +128,14 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         CHECK(session.unsaved(false) == "the take that was measured");
         editor.go(PageName::measure);
         plugin::click(editor, "Measure it");
-        plugin::answer(editor, 0);
+        plugin::answer(editor, false);
         CHECK(!session.status().busy);
         editor.load(juce::File("/nowhere/take.csv"));  // as if it had been dropped
-        plugin::answer(editor, 0);
+        plugin::answer(editor, false);
         CHECK(session.status().failures == 0);
         plugin::click(editor, "Start measuring");
         plugin::picture(editor, "asked");
-        plugin::answer(editor, 0);
+        plugin::answer(editor, false);
         CHECK(!panel.running());
         CHECK(session.findings() == findings);
 
@@ -145,7 +145,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         CHECK(session.unsaved(true).empty());
         folder.deleteRecursively();
         plugin::click(editor, "Measure it");
-        CHECK(plugin::question() == nullptr);
+        CHECK(plugin::question(editor) == nullptr);
         CHECK(session.status().busy);
         session.cancel();
         session.wait();
@@ -160,7 +160,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
         editor.go(PageName::measure);
         panel.setOutput(3);
         plugin::click(editor, "Start measuring");
-        plugin::answer(editor, 1);
+        plugin::answer(editor, true);
         CHECK(panel.running());
         app.run();
         REQUIRE(!panel.running());
@@ -172,7 +172,7 @@ TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect i
     {
         editor.go(PageName::measure);
         plugin::click(editor, "Start measuring");
-        plugin::answer(editor, 1);
+        plugin::answer(editor, true);
         REQUIRE(panel.running());
         plugin::VirtualDevice::gone = true;
         app.run();
