@@ -103,6 +103,29 @@ TEST_CASE("A microphone's roll-off is told, and the record is free of it", "[che
     }
 }
 
+TEST_CASE("A microphone's roll-off is told behind a port, which bends the sound near it", "[check][sound]")
+{
+    for (const std::uint64_t seed : {31U, 33U, 35U, 38U}) {
+        bench::DrawOptions options;
+        options.driver = "woofer";
+        options.hidden = {{"vented-box", 0.4}};
+        options.seconds = 2.0;
+        options.noiseDb = -75.0;
+        options.channels = withMotion;
+        options.channels->insert(options.channels->begin(), Quantity::voltage);
+        const auto drawn = bench::draw(seed, options);
+        auto take = bench::measure(drawn.speaker, drawn.setup);
+        const double corner = 6.0 + 2.0 * static_cast<double>(seed % 4);
+        rollOff(pressureOf(take).samples, corner, take.sampleRate);
+        const PreparedTake prepared(take);
+        INFO("seed " << seed);
+        const auto* problem = found(prepared.report(), "roll-off");
+        REQUIRE(problem);
+        CHECK(problem->value == Approx(corner).epsilon(0.2));
+        CHECK_FALSE(found(prepared.report(), "sound-path"));
+    }
+}
+
 TEST_CASE("Pressure of which a part comes from a room is set aside", "[check][sound]")
 {
     const auto straight = seedTake({{"stiffness", 0.3}}, withMotion);

@@ -125,17 +125,66 @@ Heard bestCorner(const MotionPerSound& sound, double around, const std::optional
     return best;
 }
 
+constexpr double leastQuality = 2.0;  // of a port
+
+/// The port near this one whose sound leaves least behind this high-pass.
+/// @param reach  of the logarithm of its frequency
+Port tuned(const MotionPerSound& sound, double around, double corner, Port port, double reach)
+{
+    double reach_Q = std::log(2.0);
+    constexpr int rounds = 3, steps = 10;
+    for (int n = 0; n < rounds; ++n) {
+        const auto tuning = [&](double logF) {
+            return leftAt(sound, around, corner, Port {std::exp(logF), port.quality});
+        };
+        const double f = std::log(port.frequency);
+        port.frequency = std::exp(goldenSection(f - reach, f + reach, steps, tuning).least);
+        const auto damping = [&](double logQ) {
+            return leftAt(sound, around, corner, Port {port.frequency, std::exp(logQ)});
+        };
+        const double Q = std::log(port.quality);
+        port.quality = std::exp(
+            goldenSection(std::max(Q - reach_Q, std::log(leastQuality)), Q + reach_Q, steps, damping).least);
+        reach *= 0.4;
+        reach_Q *= 0.4;
+    }
+    return port;
+}
+
+/// A high-pass and a port, each sought with the other: a port that was sought without one takes on what it does.
+Heard bestTogether(const MotionPerSound& sound, double around, const Port& alone)
+{
+    constexpr double reach = 0.1, octave = 2.0;
+    constexpr int turns = 4;
+    Heard best {leftAt(sound, around, 0.0, alone), 0.0};
+    Port port = alone;
+    for (double corner = 0.06 * sound.lowest(); corner < 3.0 * sound.lowest(); corner *= octave) {
+        const auto beside = tuned(sound, around, corner, alone, reach);
+        if (const double left = leftAt(sound, around, corner, beside); left < best.left) {
+            best = {left, corner};
+            port = beside;
+        }
+    }
+    for (int n = 0; n < turns; ++n) {
+        const auto heard = bestCorner(sound, around, port);
+        if (heard.left < best.left)
+            best = heard;
+        port = tuned(sound, around, best.corner, port, reach);
+    }
+    return best;
+}
+
 /// The port whose sound leaves least without a high-pass.
 /// @param around  s, the delay of a cone without a port; then that of one with it
 Port bestPort(const MotionPerSound& sound, double& around)
 {
     Port best;
     double least = std::numeric_limits<double>::infinity();
-    constexpr double step = 1.07, least_Q = 2.0, turns = 1.5, turn = 0.15;
+    constexpr double step = 1.07, turns = 1.5, turn = 0.15;
     const double rough = around;
     for (double shift = -turns; shift <= turns; shift += turn)
         for (double f = 0.7 * sound.lowest(); f < sound.highest(); f *= step)
-            for (const double quality : {least_Q, 4.0, 8.0, 16.0, 32.0}) {
+            for (const double quality : {leastQuality, 4.0, 8.0, 16.0, 32.0}) {
                 const double delay = rough + shift / sound.highest();
                 if (const double left = sound.left(delay, 0.0, Port {f, quality}); left < least) {
                     least = left;
@@ -143,22 +192,7 @@ Port bestPort(const MotionPerSound& sound, double& around)
                     around = delay;
                 }
             }
-    double reach_f = std::log(step), reach_Q = std::log(2.0);
-    constexpr int rounds = 3, steps = 10;
-    for (int n = 0; n < rounds; ++n) {
-        const auto tuned = [&](double logF) { return leftAt(sound, around, 0.0, Port {std::exp(logF), best.quality}); };
-        const double f = std::log(best.frequency);
-        best.frequency = std::exp(goldenSection(f - reach_f, f + reach_f, steps, tuned).least);
-        const auto damped = [&](double logQ) {
-            return leftAt(sound, around, 0.0, Port {best.frequency, std::exp(logQ)});
-        };
-        const double Q = std::log(best.quality);
-        best.quality = std::exp(
-            goldenSection(std::max(Q - reach_Q, std::log(least_Q)), Q + reach_Q, steps, damped).least);
-        reach_f *= 0.4;
-        reach_Q *= 0.4;
-    }
-    return best;
+    return tuned(sound, around, 0.0, best, std::log(step));
 }
 
 SoundPath pathOf(const MotionPerSound& sound)
@@ -184,9 +218,12 @@ SoundPath pathOf(const MotionPerSound& sound)
         path.left = straight = left;
         path.rollOff = 0.0;
     }
-    if (explained())
+    // What a port explains nearly may be more than it: it bends where a microphone rolls off.
+    constexpr double nearNoise = 3.0, clearlyLess = 0.7;
+    if (path.left < nearNoise * path.noise)
         return path;
-    if (const auto heard = bestCorner(sound, around, port); heard.left < explains * path.left) {
+    if (const auto heard = bestTogether(sound, around, port);
+        heard.corner > 0.0 && heard.left < clearlyLess * path.left) {
         path.left = heard.left;
         path.rollOff = heard.corner;
     }
