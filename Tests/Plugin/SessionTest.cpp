@@ -9,11 +9,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #ifndef _WIN32
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #endif
 
 using namespace excursion;
@@ -90,38 +91,45 @@ TEST_CASE("What is to be saved is saved, whatever is cancelled, opened or closed
 #ifndef _WIN32
 TEST_CASE("A file that never comes holds up neither the next one nor a save, and a session ends without it", "[plugin]")
 {
-    NewFolder folder, saved;
-    std::filesystem::create_directories(folder.path);
-    const auto pipe = (folder.path / "pipe.csv").string();
-    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    // its sound is a pipe to which nothing is written
+    NewFolder hanging, saved, again;
+    const auto pipe = hanging.path / "take.wav";
     {
         Session session;
         session.open(VirtualOrder {"midbass", 3});
         waitForTake(session);
         session.cancel();
-        session.wait();
-        session.open(pipe);
         session.saveTake(session.findings(), saved.path.string());
-        for (int k = 0; k < 60000 && !saved.holdsTake(); ++k)
+        session.wait();
+        std::filesystem::copy(saved.path, hanging.path);
+        REQUIRE(std::filesystem::remove(pipe));
+        REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+
+        session.open(hanging.path.string());
+        session.saveTake(session.findings(), again.path.string());
+        for (int k = 0; k < 60000 && !again.holdsTake(); ++k)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        CHECK(saved.holdsTake());
+        CHECK(again.holdsTake());
         CHECK(session.status().busy);
         session.cancel();
         session.wait();
         CHECK(session.status().words == "Cancelled.");
 
-        session.open(pipe);
+        session.open(hanging.path.string());
         session.open(saved.path.string());
         const auto name = saved.path.filename().string();
         for (int k = 0; k < 60000 && session.findings()->source != name; ++k)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         CHECK(session.findings()->source == name);
         session.cancel();
-        session.open(pipe);
+        session.open(hanging.path.string());
     }
-    // what reads the pipe is let go of, so that it ends before the test does
-    for (int k = 0; k < 3; ++k)
-        std::ofstream(pipe) << "no take";
+    // What still waits for the pipe is let go of, so that it ends before the test does.
+    for (int k = 0; k < 200; ++k) {
+        if (const int end = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK); end >= 0)
+            ::close(end);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
 }
 #endif
 
