@@ -51,7 +51,19 @@ std::string sentenceOf(const std::exception_ptr& thrown)
 
 }  // namespace
 
-Session::Session() : thread_([this](const std::stop_token& stop) { run(stop); }) { inbox_->session = this; }
+Session::Opened Session::openFile(const std::string& path)
+{
+    if (const auto header = headerOf(path); !header.empty()) {
+        auto own = readOwnTake(header);
+        return {std::move(own.take), std::move(own.sweep)};
+    }
+    return {readTake(path), std::nullopt};
+}
+
+Session::Session(Open open) : open_(std::move(open)), thread_([this](const std::stop_token& stop) { run(stop); })
+{
+    inbox_->session = this;
+}
 
 Session::~Session()
 {
@@ -142,16 +154,10 @@ void Session::fail(const std::string& trouble)
     ++status_.failures;
 }
 
-void Session::read(const std::shared_ptr<Inbox>& inbox, const ReadingPointer& reading)
+void Session::read(const std::shared_ptr<Inbox>& inbox, const ReadingPointer& reading, const Open& open)
 {
     try {
-        if (const auto header = headerOf(reading->path); !header.empty()) {
-            auto own = readOwnTake(header);
-            reading->take = std::move(own.take);
-            reading->sweep = std::move(own.sweep);
-        } else {
-            reading->take = readTake(reading->path);
-        }
+        reading->opened = open(reading->path);
     } catch (const std::exception&) {
         reading->thrown = std::current_exception();
     }
@@ -273,8 +279,9 @@ void Session::open(const std::string& path)
     reading->path = path;
     const auto work = [this, reading](const Progress& progress) {
         auto told = from(std::filesystem::path(reading->path).filename().string());
-        told.sweep = std::move(reading->sweep);
-        take(*std::exchange(reading->take, std::nullopt), told, progress);
+        auto opened = *std::exchange(reading->opened, std::nullopt);
+        told.sweep = std::move(opened.second);
+        take(std::move(opened.first), told, progress);
     };
     {
         const std::lock_guard lock(mutex_);
@@ -290,7 +297,7 @@ void Session::open(const std::string& path)
         const std::lock_guard lock(inbox_->mutex);
         ++inbox_->readers;
     }
-    std::thread(read, inbox_, reading).detach();
+    std::thread(read, inbox_, reading, open_).detach();
 }
 
 void Session::open(const VirtualOrder& wanted)

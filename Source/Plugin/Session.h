@@ -19,6 +19,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace excursion::plugin {
@@ -65,7 +66,12 @@ struct Adapted {
 /// take does not, and one that never comes holds nothing up.
 class Session {
 public:
-    Session();
+    /// What a file holds, and the sweeps that it says it was played with; throws Error.
+    using Opened = std::pair<Take, std::optional<SweepExcitation>>;
+    using Open = std::function<Opened(const std::string& path)>;
+    static Opened openFile(const std::string& path);
+
+    explicit Session(Open = openFile);
     ~Session();
 
     /// As readSweepTake(), or readTake() for responses. What is under way goes on until the take has been read, and for
@@ -128,8 +134,7 @@ private:
     /// A file that is to be opened.
     struct Reading {
         std::string path;
-        std::optional<Take> take;
-        std::optional<SweepExcitation> sweep;
+        std::optional<Opened> opened;
         std::exception_ptr thrown;  ///< null where it could be read
         bool done = false;
     };
@@ -150,7 +155,7 @@ private:
     void order(Work, bool saves = false);
     void run(const std::stop_token&);
     std::vector<Order>::iterator next();
-    static void read(const std::shared_ptr<Inbox>&, const ReadingPointer&);
+    static void read(const std::shared_ptr<Inbox>&, const ReadingPointer&, const Open&);
     void came(const ReadingPointer&);
     void fail(const std::string& trouble);
     /// @param told  Findings without a take
@@ -179,6 +184,7 @@ private:
     std::optional<Adapted> adapted_;
     std::shared_ptr<const PreparedTake> savedTake_;  ///< the last one that was
     std::shared_ptr<const FittedPnlss> savedPnlss_;
+    const Open open_;
     const std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
     std::jthread thread_;
 };
