@@ -54,21 +54,30 @@ public:
 
     void systemRequestedQuit() override
     {
-        auto* const editor = window_ != nullptr ? window_->editor() : nullptr;
-        if (editor == nullptr)
-            end();
-        else
-            editor->onceAgreed(true, "quit", [this] { end(); });
+        if (window_ == nullptr) {
+            quit();
+            return;
+        }
+        window_->pluginHolder->savePluginState();  // whatever comes of the question
+        // Dialogs hold on to the devices, which end before them.
+        if (juce::ModalComponentManager::getInstance()->cancelAllModalComponents()) {
+            juce::Timer::callAfterDelay(100, [] {
+                if (auto* app = JUCEApplicationBase::getInstance())
+                    app->systemRequestedQuit();
+            });
+            return;
+        }
+        auto* const editor = window_->editor();
+        if (editor == nullptr) {
+            quit();
+            return;
+        }
+        window_->setMinimised(false);
+        window_->toFront(true);
+        editor->onceAgreed(true, "quit", [] { quit(); });
     }
 
 private:
-    void end()
-    {
-        if (window_ != nullptr)
-            window_->pluginHolder->savePluginState();
-        quit();
-    }
-
     juce::ApplicationProperties settings_;
     std::unique_ptr<AppWindow> window_;
 };

@@ -191,12 +191,12 @@ void Editor::onceAgreed(bool withRecording, const juce::String& wish, std::funct
         then();
         return;
     }
-    question_ = std::make_unique<Question>(lost + " would be lost: there is no file of it yet.",
+    question_ = std::make_unique<Question>(lost + " would be lost, as no file holds it.",
                                            wish.substring(0, 1).toUpperCase() + wish.substring(1));
     agreed_ = std::move(then);
     body_.addAndMakeVisible(*question_);
     question_->setBounds(body_.getLocalBounds());
-    question_->enterModalState(isShowing());
+    question_->enterModalState(false);
 }
 
 void Editor::hearAnswer()

@@ -16,7 +16,7 @@ Question::Question(const juce::String& text, const juce::String& agree) : agree_
     agree_.onClick = [this] { answer(true); };
     cancel_.onClick = [this] { answer(false); };
     int order = 0;
-    for (auto* part : std::initializer_list<juce::Component*> {&text_, &agree_, &cancel_}) {
+    for (auto* part : std::initializer_list<juce::Component*> {&text_, &cancel_, &agree_}) {
         part->setExplicitFocusOrder(++order);
         addAndMakeVisible(part);
     }
@@ -58,11 +58,21 @@ void Question::resized()
 
 bool Question::keyPressed(const juce::KeyPress& key)
 {
-    if (key == juce::KeyPress::escapeKey || key == juce::KeyPress::returnKey) {
-        answer(key == juce::KeyPress::returnKey);
-        return true;
-    }
-    return false;
+    if (key == juce::KeyPress::escapeKey)
+        answer(false);
+    return !key.isKeyCode(juce::KeyPress::tabKey);
+}
+
+/// Other windows of the process, of another loudspeaker, go on.
+bool Question::canModalEventBeSentToComponent(const juce::Component* target)
+{
+    return target != nullptr && target->getTopLevelComponent() != getTopLevelComponent();
+}
+
+void Question::parentHierarchyChanged()
+{
+    if (isShowing())
+        cancel_.grabKeyboardFocus();  // a key that is still held must not agree
 }
 
 std::unique_ptr<juce::AccessibilityHandler> Question::createAccessibilityHandler()

@@ -8,7 +8,7 @@
 namespace excursion::plugin {
 
 /// A question with two answers, over all of the window that it is asked in: hosts do not expect another window, nor one
-/// that waits. Return agrees, Escape does not. All on the message thread.
+/// that waits. Escape cancels, and all other keys but those of its buttons are held back. All on the message thread.
 class Question : public juce::Component {
 public:
     /// @param agree  what the button says that agrees, as "Quit"
@@ -20,6 +20,8 @@ public:
     void paint(juce::Graphics&) override;
     void resized() override;
     bool keyPressed(const juce::KeyPress&) override;
+    bool canModalEventBeSentToComponent(const juce::Component*) override;
+    void parentHierarchyChanged() override;
     std::unique_ptr<juce::AccessibilityHandler> createAccessibilityHandler() override;
 
 private:

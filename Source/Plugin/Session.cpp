@@ -16,7 +16,8 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr auto readingPatience = std::chrono::seconds(1);  // with files that are being read when a session ends
+constexpr auto readingWords = "reading the take";
+constexpr auto readingPatience = std::chrono::seconds(5);  // with files that are being read when a session ends
 
 std::string titlesOf(const std::vector<bench::HiddenEffect>& hidden)
 {
@@ -68,13 +69,15 @@ Session::Session(Open open) : open_(std::move(open)), thread_([this](const std::
 Session::~Session()
 {
     {
-        std::unique_lock lock(inbox_->mutex);
+        const std::lock_guard lock(inbox_->mutex);
         inbox_->session = nullptr;
-        inbox_->changed.wait_for(lock, readingPatience, [this] { return inbox_->readers == 0; });
     }
     cancel();
     thread_.request_stop();
     changed_.notify_all();
+    // Whoever still reads runs code that may be unloaded after this: only a file that hangs is left behind.
+    std::unique_lock lock(inbox_->mutex);
+    inbox_->changed.wait_for(lock, readingPatience, [this] { return inbox_->readers == 0; });
 }
 
 void Session::order(Work work, bool saves)
@@ -143,6 +146,10 @@ void Session::run(const std::stop_token& stop)
         }
         working_ = false;
         status_.busy = !orders_.empty();
+        if (status_.busy && next() == orders_.end()) {
+            status_.words = readingWords;
+            status_.fraction = 0.0;
+        }
         changed_.notify_all();
     }
 }
@@ -286,7 +293,7 @@ void Session::open(const std::string& path)
     {
         const std::lock_guard lock(mutex_);
         if (!status_.busy) {
-            status_.words = "reading the take";
+            status_.words = readingWords;
             status_.fraction = 0.0;
             status_.trouble = false;
         }
@@ -297,7 +304,11 @@ void Session::open(const std::string& path)
         const std::lock_guard lock(inbox_->mutex);
         ++inbox_->readers;
     }
-    std::thread(read, inbox_, reading, open_).detach();
+    try {
+        std::thread(read, inbox_, reading, open_).detach();
+    } catch (const std::system_error&) {  // there is no thread to be had
+        read(inbox_, reading, open_);
+    }
 }
 
 void Session::open(const VirtualOrder& wanted)

@@ -63,7 +63,7 @@ struct Adapted {
 /// identify models without physics. Every
 /// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
 /// other. A new take makes what is under way stop; each file is read on a thread of its own, so that one that is no
-/// take does not, and one that never comes holds nothing up.
+/// take does not, and one that never comes holds up neither the next file nor a save.
 class Session {
 public:
     /// What a file holds, and the sweeps that it says it was played with; throws Error.
@@ -182,8 +182,8 @@ private:
     bool keeps_ = false;  ///< it has not been opened yet
     Identification identification_;
     std::optional<Adapted> adapted_;
-    std::shared_ptr<const PreparedTake> savedTake_;  ///< the last one that was
-    std::shared_ptr<const FittedPnlss> savedPnlss_;
+    std::weak_ptr<const PreparedTake> savedTake_;  ///< the last one that was
+    std::weak_ptr<const FittedPnlss> savedPnlss_;
     const Open open_;
     const std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
     std::jthread thread_;

@@ -90,9 +90,10 @@ std::string Session::unsaved(bool withRecording) const
     const std::lock_guard lock(mutex_);
     std::string words;
     const auto add = [&words](const char* what) { words += (words.empty() ? "" : " and ") + std::string(what); };
-    if (findings_ && findings_->measured && findings_->take != savedTake_)
+    // of a take that is not fit for use the recording is what counts
+    if (findings_ && findings_->measured && findings_->report.fitForUse() && findings_->take != savedTake_.lock())
         add("the take that was measured");
-    if (identification_.pnlss && identification_.pnlss != savedPnlss_)
+    if (identification_.pnlss && identification_.pnlss != savedPnlss_.lock())
         add("the PNLSS that was fitted");
     if (withRecording && recording_)
         add("the last recording");

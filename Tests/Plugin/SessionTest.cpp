@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <future>
@@ -87,11 +88,15 @@ TEST_CASE("A file that never comes holds up neither the next one nor a save, and
 {
     NewFolder saved, again;
     std::promise<void> comes;
-    const auto open = [came = comes.get_future().share()](const std::string& path) {
-        if (path == "a disk that is gone")
-            came.wait();
-        return Session::openFile(path);
+    const auto left = std::make_shared<std::atomic<int>>(3);  // threads that wait for it
+    const auto open = [came = comes.get_future().share(), left](const std::string& path) {
+        if (path != "a disk that is gone")
+            return Session::openFile(path);
+        came.wait();
+        --*left;
+        return Session::Opened();
     };
+    auto closed = std::chrono::steady_clock::now();
     {
         Session session(open);
         session.open(VirtualOrder {"midbass", 3});
@@ -119,8 +124,12 @@ TEST_CASE("A file that never comes holds up neither the next one nor a save, and
         CHECK(session.findings()->source == name);
         session.cancel();
         session.open("a disk that is gone");
+        closed = std::chrono::steady_clock::now();
     }
+    CHECK(std::chrono::steady_clock::now() - closed < std::chrono::seconds(20));
     comes.set_value();
+    while (*left > 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 TEST_CASE("A file that cannot be read is a failure, whatever is under way", "[plugin]")

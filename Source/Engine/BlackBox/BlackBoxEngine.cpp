@@ -25,6 +25,7 @@ void BlackBoxEngine::reset()
 {
     if (bend_)
         bend_->reset();
+    amplifier_.reset();
     resetPlaying();
     std::fill(waiting_.begin(), waiting_.end(), 0.0);
     at_ = 0;
@@ -40,7 +41,9 @@ void BlackBoxEngine::resetBending()
 
 void BlackBoxEngine::resetPlaying()
 {
-    amplifier_.reset();
+    // an amplifier does not lose its charge as the loudspeaker behind it is played
+    const auto left = warmth();
+    amplifier_.charge(left.charge);
     speaker_.reset();
 }
 
@@ -55,6 +58,9 @@ void BlackBoxEngine::pass(const double* volts, std::size_t n)
 {
     if (bend_)
         bend_->pass(volts, n);
+    else
+        for (std::size_t k = 0; k < n; ++k)
+            amplifier_.take(std::isfinite(volts[k]) ? volts[k] : 0.0);
 }
 
 void BlackBoxEngine::set(const PredistortionControls& controls)
@@ -89,6 +95,9 @@ void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
         for (std::size_t k = 0; k < n; ++k)
             sound_[k] = amplifier_.pass(volts[k]);
         speaker_.process(sound_.data(), sound_.data(), n);
+    } else if (!bend_) {
+        for (std::size_t k = 0; k < n; ++k)
+            amplifier_.take(volts[k]);
     }
     for (std::size_t k = 0; k < n; ++k) {
         if (!waiting_.empty()) {

@@ -156,7 +156,8 @@ void BlackBoxPredistorter::follow(const BlackBoxLinearizer::Sample& sample, doub
         apart = y - (sample.output - sample.residual);
         peak_.displacement = std::max(peak_.displacement, std::abs(y - still_));
     }
-    protection_.note(linearizer_.slow(), warm_ > 0 ? 0.0 : apart, sample.input, sample.wanted);
+    protection_.note(linearizer_.slow(), warm_ > 0 ? 0.0 : apart, std::abs(sample.input) + withheld_,
+                     std::abs(sample.wanted) + withheld_);
 }
 
 /// Of one sample at the model's rate; none while it stands still.
@@ -191,9 +192,11 @@ void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
         near_.aim(protection_.near());
         effort_.aim(protection_.effort());
         const double limit = std::min(bound_, protection_.voltageLimit());
-        toModel_.push(signal_.pass(u));
+        const double passed = signal_.pass(u);
+        withheld_ = std::abs(u - passed);
+        toModel_.push(passed);
         for (double v = 0.0; toModel_.pull(v);) {
-            const double made = correctionFor(v, limit);
+            const double made = correctionFor(v, limit + withheld_);
             if (skip_ > 0) {
                 --skip_;
                 continue;

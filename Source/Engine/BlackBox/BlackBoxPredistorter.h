@@ -92,6 +92,7 @@ private:
     /// What reaches the loudspeaker, which is what the model hears: of the signal, and, at the model's rate, of the
     /// correction
     CouplingFilter signal_, added_;
+    double withheld_ = 0.0;  ///< V, by which the limit of the voltage is another behind the amplifier at the moment
     std::vector<double> x_, z_, q_;
     Rest rest_;
     double still_;  ///< the output at rest

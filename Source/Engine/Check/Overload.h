@@ -16,7 +16,8 @@ namespace excursion {
 /// How far the largest value was bent is then told by the inverse function, by the same sum over powers of y. Two
 /// channels that follow the motion of the cone are partners, and what the loudspeaker distorts cancels. Beside the
 /// input it does not: but it goes through the resonance and the coil, so no single function of the channel's value
-/// makes it over the whole band (0.4 of it is the most that was seen), except of a displacement, which Bl(x) bends
+/// makes it over the whole band (0.4 of it is the most that was seen, with powers of
+/// all that the channel holds), except of a displacement, which Bl(x) bends
 /// nearly as a function of itself. Told when a function explains 0.65 of what is not noise on at least 40 lines over
 /// two octaves or more, and 0.4 in each quarter of these lines, and it is no less than -60 dB of the channel. Without
 /// lines that the excitation leaves out nothing can be told.

@@ -166,10 +166,10 @@ Heard bestTogether(const MotionPerSound& sound, double around, const Port& alone
         }
     }
     for (int n = 0; n < turns; ++n) {
-        const auto heard = bestCorner(sound, around, port);
-        if (heard.left < best.left)
+        if (n > 0)
+            port = tuned(sound, around, best.corner, port, reach);
+        if (const auto heard = bestCorner(sound, around, port); heard.left < best.left)
             best = heard;
-        port = tuned(sound, around, best.corner, port, reach);
     }
     return best;
 }
@@ -219,11 +219,11 @@ SoundPath pathOf(const MotionPerSound& sound)
         path.rollOff = 0.0;
     }
     // What a port explains nearly may be more than it: it bends where a microphone rolls off.
-    constexpr double nearNoise = 3.0, clearlyLess = 0.7;
+    constexpr double nearNoise = 1.5, nearly = 2.0, clearlyLess = 0.7;
     if (path.left < nearNoise * path.noise)
         return path;
-    if (const auto heard = bestTogether(sound, around, port);
-        heard.corner > 0.0 && heard.left < clearlyLess * path.left) {
+    const double most = path.left < nearly * accurate ? clearlyLess : explains;
+    if (const auto heard = bestTogether(sound, around, port); heard.corner > 0.0 && heard.left < most * path.left) {
         path.left = heard.left;
         path.rollOff = heard.corner;
     }

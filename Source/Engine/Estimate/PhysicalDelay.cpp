@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 namespace excursion {
 namespace {
@@ -174,19 +175,21 @@ double plateauEnd(const std::vector<Line>& lines, double resonance)
     return lines.back().omega;
 }
 
-}  // namespace
-
-/// Whether the corner of a sensor makes what looks late: over all lines the polynomial of the motion times
-/// 1 + q T s + T^2 s^2, which is two more powers of s, leaves far less than it does with a delay. Phases alone would
-/// not tell: a corner of q = sqrt(2) turns them as a delay of q T does, but it takes off the top as well.
-bool sensorHasCorner(const std::vector<Line>& lines, Basis basis)
+/// The delay beside the corner of a sensor, if it has one: over all lines the polynomial of the motion times
+/// 1 + q T s + T^2 s^2, which is two more powers of s, leaves little, and far less than it does with a delay alone.
+/// Phases by themselves would not tell: a corner of q = sqrt(2) turns them as a delay of q T does, but it takes off the
+/// top as well.
+std::optional<DelayFit> besideCorner(const std::vector<Line>& lines, Basis basis)
 {
-    constexpr double far = 0.5;
+    constexpr double far = 0.5, little = 0.05;
     const double late = fitLines(lines, basis).relativeError;
     basis.push_back(power(3));
     basis.push_back(power(4));
-    return fitLines(lines, basis).relativeErrorWithout < far * late;
+    const auto fit = fitLines(lines, basis);
+    return fit.relativeError < std::min(far * late, little) ? std::optional(fit) : std::nullopt;
 }
+
+}  // namespace
 
 PhysicalDelay currentDelay(const Frf& admittance)
 {
@@ -287,9 +290,16 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
     }
     verdict.doubtful = verdict.clear && !confirmed
                        && !judge(fits, lines.back().omega, {thresholds.radians, roundFall}).clear;
-    verdict.clear = verdict.clear && !verdict.doubtful
-                    && !(drive == MotionReference::force
-                         && sensorHasCorner(band(all, lines.front().omega, all.back().omega), basis));
+    verdict.clear = verdict.clear && !verdict.doubtful;
+    if (verdict.clear && drive == MotionReference::force) {
+        const auto wide = band(all, lines.front().omega, all.back().omega);
+        if (const auto beside = besideCorner(wide, basis)) {
+            const auto precise = judge({*beside}, wide.back().omega, thresholds);
+            verdict.clear = precise.clear;
+            verdict.seconds = precise.seconds;
+            verdict.standardError = precise.standardError;
+        }
+    }
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
                        && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });

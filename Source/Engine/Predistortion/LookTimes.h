@@ -17,7 +17,8 @@ struct LookTimes {
     Eigen::VectorXd coasting;  ///< of a cone that is left alone now, which is the first of them
     Eigen::VectorXd plan;      ///< while the input is known, and of a cone that is left alone then
 
-    static constexpr double spacing = 0.03;  ///< periods of the resonance, at most
+    /// Periods of the resonance, at most; of a cone that is left alone 0.05 for the wish, whose factors the plan mends.
+    static constexpr double spacing = 0.03;
 };
 
 }  // namespace excursion

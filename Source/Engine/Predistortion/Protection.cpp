@@ -233,6 +233,7 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
             drives_(step, static_cast<Eigen::Index>(b) + 1) += u * shape_[k];
         }
     }
+    static_assert(1 + bands == 4);
     byInput_.multiplyFour(drives_.data(), driven_.data());
     byCone_.multiply(cone.data(), rest_.data());
     rest_ += driven_.col(0);
