@@ -44,7 +44,8 @@ enum class MotionReference {
 /// (voltage drive: 1 rad), exceeds 5 standard errors, lets the error fall by 4.5 dB (6 dB; both 10 dB beyond 2 rad),
 /// and the lower 0.5 and 0.7 of the band say the same, as they do not when a mode of the cone turns the phase. Where
 /// they hold too few lines to say anything, the error must fall by 10 dB, and nothing is said where it falls by less.
-/// Inverted: a < 0.
+/// Where all lines, to the end of the band, show the corner of a sensor beside it (s^3 and s^4, which leave half of what
+/// is left without them and at most 0.05), the delay is that beside the corner, if any. Inverted: a < 0.
 /// @param motion  motion/drive with its variance
 PhysicalDelay motionDelay(const Frf& motion, Quantity, MotionReference);
 
