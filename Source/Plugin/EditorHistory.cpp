@@ -4,7 +4,6 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Plots/Words.h"
 
 #include <nlohmann/json.hpp>
 
@@ -184,14 +183,14 @@ void Editor::saveModel(const Model& model, const juce::File& file)
 
 void Editor::onceAgreed(bool withRecording, const juce::String& wish, std::function<void()> then)
 {
-    auto lost = words(capitalized(owner_.session().unsaved(withRecording)));
+    auto lost = words(owner_.session().unsaved(withRecording));
     if (auto* measuring = measure_.measuring(); withRecording && measuring != nullptr && measuring->running())
-        lost += lost.isEmpty() ? "The measurement under way" : " and the measurement under way";
+        lost += (lost.isEmpty() ? "" : " and ") + juce::String("the measurement under way");
     if (lost.isEmpty()) {
         then();
         return;
     }
-    question_ = std::make_unique<Question>(lost + " would be lost, as no file holds it.",
+    question_ = std::make_unique<Question>("Not saved, and lost by this: " + lost + ".",
                                            wish.substring(0, 1).toUpperCase() + wish.substring(1));
     agreed_ = std::move(then);
     body_.addAndMakeVisible(*question_);

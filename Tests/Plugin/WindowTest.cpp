@@ -2,6 +2,7 @@
 // The window itself: its size and scale, what of them is kept, where a page begins.
 #include "BlackBox/EveryClass.h"
 #include "Engine/Error.h"
+#include "Plugin/Clicks.h"
 #include "Plugin/FillList.h"
 #include "Plugin/Walk.h"
 
@@ -35,10 +36,15 @@ TEST_CASE("A new diagnosis is read from its beginning, wherever the one before w
 TEST_CASE("A list that is open closes when it gets other items, and only then", "[plugin]")
 {
     juce::Component window;
-    window.addToDesktop(0);
-    window.setVisible(true);
+    // menus as parts of the window: without a window manager there are no others
+    struct Within : juce::LookAndFeel_V4 {
+        explicit Within(juce::Component& component) : parent(component) {}
+        juce::Component* getParentComponentForMenuOptions(const juce::PopupMenu::Options&) override { return &parent; }
+        juce::Component& parent;
+    } look(window);
+    window.setSize(200, 160);
     juce::ComboBox list;
-    window.setSize(200, 60);
+    list.setLookAndFeel(&look);
     window.addAndMakeVisible(list);
     list.setBounds(10, 10, 150, 24);
     plugin::fillList(list, {"base", "K(x)"}, 1);
@@ -50,6 +56,8 @@ TEST_CASE("A list that is open closes when it gets other items, and only then", 
     plugin::fillList(list, {"base", "Bl(x)", "K(x)"}, 2);
     CHECK(!list.isPopupActive());
     CHECK(list.getText() == "Bl(x)");
+    plugin::dispatch();
+    list.setLookAndFeel(nullptr);
 }
 
 TEST_CASE("The window opens within nine tenths of the screen, and what was chosen of it is kept", "[plugin]")
