@@ -17,6 +17,31 @@ public:
     void closeButtonPressed() override { juce::JUCEApplicationBase::getInstance()->systemRequestedQuit(); }
 
     Editor* editor() const { return dynamic_cast<Editor*>(pluginHolder->processor->getActiveEditor()); }
+
+private:
+    /// JUCE's own menu, but that what would be lost is asked for before all is as it was at first.
+    void buttonClicked(juce::Button*) override
+    {
+        juce::PopupMenu menu;
+        menu.addItem("Audio settings...", [this] { pluginHolder->showAudioSettingsDialog(); });
+        menu.addSeparator();
+        menu.addItem("Save current state...", [this] { pluginHolder->askUserToSaveState(); });
+        menu.addItem("Load a saved state...", [this] { pluginHolder->askUserToLoadState(); });
+        menu.addSeparator();
+        menu.addItem("Reset to default state", [this] {
+            auto* const shown = editor();
+            if (shown == nullptr)
+                return;
+            // later, as this deletes the editor that calls it
+            shown->onceAgreed(true, "reset", [window = SafePointer<AppWindow>(this)] {
+                juce::MessageManager::callAsync([window] {
+                    if (window != nullptr)
+                        window->resetToDefaultState();
+                });
+            });
+        });
+        menu.showMenuAsync(juce::PopupMenu::Options().withDeletionCheck(*this));
+    }
 };
 
 class App : public juce::JUCEApplication {
