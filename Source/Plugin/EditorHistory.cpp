@@ -229,10 +229,7 @@ void Editor::noteRehearsal()
 void Editor::load(const juce::File& file)
 {
     if (!holdsModel(file)) {
-        onceAgreed(false, "open another take", [this, file] {
-            owner_.session().open(file.getFullPathName().toStdString());
-            go(PageName::measure);
-        });
+        measure_.open(file);
         return;
     }
     useFile(file);

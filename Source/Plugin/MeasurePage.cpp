@@ -158,8 +158,10 @@ void MeasurePage::choose()
 void MeasurePage::open(const juce::File& file)
 {
     if (file != juce::File())
-        window_.onceAgreed(false, "open another take",
-                           [this, path = file.getFullPathName().toStdString()] { session().open(path); });
+        window_.onceAgreed(false, "open another take", [this, path = file.getFullPathName().toStdString()] {
+            session().open(path);
+            window_.go(PageName::measure);
+        });
 }
 
 void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)

@@ -23,13 +23,13 @@ public:
     void resized() override;
 
     MeasuringPanel* measuring() { return measuring_.get(); }
-    void choose();  ///< asks for a take
+    void choose();                 ///< asks for a take
+    void open(const juce::File&);  ///< once a person agrees where that loses something; nothing for no file
     // As a folder, unless that holds a take or a recording.
     void saveTake(const std::shared_ptr<const Findings>&, const juce::File&);
     void saveRecording(const std::shared_ptr<const RecordingOptions>&, const juce::File&);
 
 private:
-    void open(const juce::File&);
     bool isFree(const juce::File&);
 
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;

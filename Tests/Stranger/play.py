@@ -36,14 +36,10 @@ def read_wav(path):
 def odd_random(spectrum, seed):
     """The odd lines of a multisine, without one at random of each four."""
     lines = np.flatnonzero(spectrum)
-    lines = lines[lines % 2 == 1]
-    keep = np.ones(len(lines), bool)
-    random = np.random.default_rng(seed)
-    for group in range(0, len(lines) - 3, 4):
-        keep[group + random.integers(0, 4)] = False
+    lines = takes.without_one_of_four(lines[lines % 2 == 1], np.random.default_rng(seed))
     left = np.zeros_like(spectrum)
-    left[lines[keep]] = spectrum[lines[keep]]
-    return left, lines[keep]
+    left[lines] = spectrum[lines]
+    return left, lines
 
 
 def distortion(y, lines):

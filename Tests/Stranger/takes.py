@@ -10,6 +10,14 @@ SIMULATE = os.environ.get("STRANGER_SIMULATE", os.path.join(HERE, "../../build/T
 BEST = {"u": 0, "i": 1, "x": 2, "v": 3, "a": 4, "laser": 5, "p": 6}
 
 
+def without_one_of_four(lines, random):
+    """Of each group of four lines one is left out at random; an incomplete last group stays."""
+    keep = np.ones(len(lines), bool)
+    for group in range(0, len(lines) - 3, 4):
+        keep[group + random.integers(0, 4)] = False
+    return lines[keep]
+
+
 def lines_of(grid, period, rate, band, d):
     lo, hi = int(np.ceil(band[0] * period / rate)), int(band[1] * period / rate)
     k = np.arange(max(lo, 1), hi + 1)
@@ -18,10 +26,7 @@ def lines_of(grid, period, rate, band, d):
     k = k[k % 2 == 1]
     if grid == "odd":
         return k
-    keep = np.ones(len(k), bool)           # odd-random: of each group of four odd lines one is left out
-    for g in range(0, len(k) - 3, 4):
-        keep[g + d.r.integers(0, 4)] = False
-    return k[keep]
+    return without_one_of_four(k, d.r)
 
 
 def multisine(d, period, lines, shape):
